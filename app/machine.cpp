@@ -1,0 +1,45 @@
+#include "app/machine.hpp"
+
+#include <sched.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+
+namespace greenwater {
+namespace {
+
+constexpr double no_limit = std::numeric_limits<double>::infinity();
+
+double address_space_limit() {
+  rlimit limit{};
+  const bool limited = getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
+  return limited ? static_cast<double>(limit.rlim_cur) : no_limit;
+}
+
+/// Containers: the kernel ends a program that takes more.
+double control_group_limit() {
+  for (const char* path : {"/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory/memory.limit_in_bytes"}) {
+    std::ifstream stream(path);
+    double bytes = 0;
+    if (stream >> bytes && bytes > 0) return bytes;  // the word "max" is no number
+  }
+  return no_limit;
+}
+
+}  // namespace
+
+double machine_memory() {
+  const double physical = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  return std::min({physical, address_space_limit(), control_group_limit()});
+}
+
+int machine_processors() {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
+  return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+}  // namespace greenwater

@@ -1,0 +1,117 @@
+#include "app/plan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <fmt/format.h>
+
+namespace greenwater {
+namespace {
+
+// Bytes per particle, counted from the fields: state and scratch of the sort (150), the solver's vectors (50), grid and
+// row ends (50), host copies for a frame (100); rounded up.
+constexpr double bytes_per_particle = 400;
+constexpr double bytes_per_neighbor = 4, bytes_per_weight = 8;
+constexpr double row_growth = 1.5;  // rows grow ahead of need
+constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
+
+double largest_radius(const MpsCase& mps) {
+  return std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
+}
+
+double memory_of(const Scene& scene, double particles) {
+  const double radius = largest_radius(scene.mps);
+  const double neighbors = scene.dimension == 2 ? std::numbers::pi * radius * radius
+                                                : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+  const double entry = bytes_per_neighbor + (scene.mps.pressure.weights == "kept" ? bytes_per_weight : 0);
+  return particles * (bytes_per_particle + row_growth * neighbors * entry);
+}
+
+double disk_of(const Scene& scene, double particles, double frames) {
+  const double real_scale = scene.output.precision == "float64" ? 2 : 1;
+  const double vtp = scene.output.paraview.empty() ? 0 : frame_bytes_vtp;
+  return frames * particles * (frame_bytes_h5 * real_scale + vtp);
+}
+
+/// Two figures, rounded down: a suggestion to type.
+double rounded_down(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  return std::floor(value / unit) * unit;
+}
+
+void warn_of_speed(const Scene& scene, Plan& plan) {
+  if (plan.cfl <= scene.mps.cfl_warn) return;
+  plan.warnings.push_back(fmt::format(
+      "cfl may reach {:.2f} at the front of a collapse (2 sqrt(g H) dt / spacing), cfl_warn is {:.2g} "
+      "-> mps.time_step = {:.2g} keeps it",
+      plan.cfl, scene.mps.cfl_warn, rounded_down(scene.mps.time_step * scene.mps.cfl_warn / plan.cfl)));
+}
+
+void warn_of_output(const Scene& scene, Plan& plan) {
+  if (scene.output.every_time == 0 && scene.probes.empty()) {
+    plan.warnings.emplace_back(
+        "no frames and no probes: only history.csv will tell what happened -> output.every_time, [[probe]]");
+  }
+  if (scene.output.every_time > 0 && scene.output.every_time < scene.mps.time_step) {
+    plan.warnings.emplace_back("output.every_time is shorter than mps.time_step: one frame per step");
+  }
+}
+
+}  // namespace
+
+std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int dimension) {
+  constexpr double round_off = 1e-6;  // of a cell: 0.4 / 0.001 is not quite 400
+  std::array<double, 3> cells{1, 1, 1};
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
+    cells[d] = std::floor((fluid.max[d] - fluid.min[d]) / spacing + round_off);
+  }
+  return cells;
+}
+
+Plan plan_of(const Scene& scene) {
+  Plan plan;
+  const auto cells = lattice_cells(scene.fluid, scene.mps.spacing, scene.dimension);
+  plan.particles = cells[0] * cells[1] * cells[2];
+  plan.steps = std::ceil(scene.end / scene.mps.time_step * (1 - 1e-12));
+  plan.frames = scene.output.every_time > 0
+                    ? std::min(std::floor(scene.end / scene.output.every_time + 1e-9), plan.steps) + 1
+                    : 0;
+  plan.memory = memory_of(scene, plan.particles);
+  plan.disk = disk_of(scene, plan.particles, plan.frames);
+  const Point& g = scene.gravity;
+  const double gravity = std::hypot(g[0], g[1], g[2]);
+  const double height = scene.fluid.max[1] - scene.fluid.min[1];
+  plan.cfl = 2 * std::sqrt(gravity * height) * scene.mps.time_step / scene.mps.spacing;
+  warn_of_speed(scene, plan);
+  warn_of_output(scene, plan);
+  return plan;
+}
+
+void require_memory(const Plan& plan, double memory, const Scene& scene) {
+  constexpr double most_particles = std::numeric_limits<int>::max();
+  const std::string cure = fmt::format("; take a larger mps.spacing than {:.6g} m", scene.mps.spacing);
+  const Place& place = scene.mps.spacing_place;
+  if (!(plan.memory <= memory)) {
+    throw ResourceError(complaint(
+        place, fmt::format("{:.0f} particles need about {:.3g} GB of memory, this machine has {:.3g} GB{}",
+                           plan.particles, plan.memory / 1e9, memory / 1e9, cure)));
+  }
+  if (plan.particles > most_particles) {
+    throw ResourceError(complaint(place, fmt::format("{:.0f} particles are more than the program can number ({:.0f}){}",
+                                                     plan.particles, most_particles, cure)));
+  }
+}
+
+std::vector<std::string> plan_lines(const Plan& plan, const Scene& scene) {
+  std::vector<std::string> lines{
+      fmt::format("fluid     {}: {:.0f} particles, spacing {:.6g} m, dt {:.6g} s, cfl {:.2f} at the front",
+                  scene.fluid.name, plan.particles, scene.mps.spacing, scene.mps.time_step, plan.cfl),
+      fmt::format("plan      {:.0f} steps, {:.0f} frames, {:.2g} GB disk, {:.2g} GB memory (estimates)", plan.steps,
+                  plan.frames, plan.disk / 1e9, plan.memory / 1e9)};
+  for (const std::string& warning : plan.warnings) lines.push_back("warning   " + warning);
+  return lines;
+}
+
+}  // namespace greenwater

@@ -1,0 +1,104 @@
+#include "app/scene.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "app/formula.hpp"
+#include "app/scene_parts.hpp"
+
+namespace greenwater {
+namespace {
+
+void read_format(Section& root) {
+  constexpr std::int64_t known_format = 1;
+  const std::int64_t format = root.count("format", 1, example<std::int64_t>(known_format));
+  require_at(root.place("format"), format == known_format, "format ", format,
+             " is not known to this version, which reads format ", known_format);
+}
+
+void read_case(Section section, Scene& scene) {
+  scene.name = section.text("name", example<std::string>("dam_break"));
+  require_safe_name(scene.name, section.place("name"), "the case");
+  scene.title = section.text("title", std::string());
+  scene.reference = section.text("reference", std::string());
+  const std::int64_t dimension = section.count("dimension", 1, std::int64_t{2});
+  require_at(section.place("dimension"), dimension == 2, "this version runs dimension = 2, not ", dimension);
+  scene.dimension = static_cast<int>(dimension);
+}
+
+void read_time(Section section, Scene& scene) {
+  scene.end = section.number("end", "s", positive, example(0.5));
+  scene.gravity = section.vector("gravity", "m/s^2", scene.dimension, Point{0, -9.81, 0});
+}
+
+void read_domain(Section& root, Scene& scene) {
+  auto section = root.table_if_present("domain");
+  if (!section) return;
+  const Corners corners = read_corners(*section, scene.dimension, {{-1, -1, 0}, {2, 2, 0}});
+  scene.has_domain = true;
+  scene.domain_min = corners.min;
+  scene.domain_max = corners.max;
+  scene.domain_place = section->place();
+}
+
+void check_times(const Scene& scene) {
+  constexpr double most_steps = 1e12;
+  require_at(scene.mps.time_step_place, scene.mps.time_step <= scene.end, "mps.time_step = ", scene.mps.time_step,
+             " s is longer than the run, time.end = ", scene.end, " s");
+  require_at(scene.mps.time_step_place, scene.end / scene.mps.time_step < most_steps, "mps.time_step = ",
+             scene.mps.time_step, " s makes more than 1e12 steps of time.end = ", scene.end, " s; take a longer step");
+}
+
+}  // namespace
+
+Corners read_corners(Section& section, int dimension, const Corners& shown) {
+  Corners corners;
+  corners.min = section.vector("min", "m", dimension, example(shown.min));
+  corners.max = section.vector("max", "m", dimension, example(shown.max));
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
+    require_at(section.place("max"), corners.max[d] > corners.min[d], section.header(), " is empty: max ",
+               toml_point(corners.max, dimension), " must be above min ", toml_point(corners.min, dimension),
+               " in every component");
+  }
+  return corners;
+}
+
+void require_safe_name(const std::string& name, const Place& place, const std::string& of_what) {
+  constexpr std::size_t longest = 64;
+  const bool safe = std::all_of(name.begin(), name.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.';
+  });
+  require_at(place, safe && !name.empty() && name.size() <= longest && name.front() != '.' && name.front() != '-',
+             "the name \"", name, "\" of ", of_what,
+             " becomes part of file names: use letters, digits, '_', '-' and '.', at most ", longest);
+}
+
+VectorFormula read_formulas(Section& section, const std::string& key, const std::string& unit, int dimension,
+                            const Preset<Formulas>& preset) {
+  VectorFormula vector;
+  vector.text = section.formulas(key, unit, dimension, preset);
+  vector.place = section.place(key);
+  compile(vector.text, vector.place);
+  return vector;
+}
+
+Scene read_scene(CaseFile& file) {
+  Scene scene;
+  Section root = file.root();
+  read_format(root);
+  read_case(root.table("case"), scene);
+  read_time(root.table("time"), scene);
+  read_domain(root, scene);
+  read_geometry(root, scene);
+  read_fluid(root, scene);
+  read_mps(root.table("mps"), scene.mps);
+  if (auto effects = root.table_if_present("effects")) read_effects(*effects, scene);
+  read_output(root.table("output"), scene.output);
+  read_probes(root, scene);
+  file.finish();
+  check_times(scene);
+  check_scene(scene);
+  return scene;
+}
+
+}  // namespace greenwater

@@ -1,0 +1,95 @@
+// [mps], [effects.NAME], [output]: how the run is done and what it leaves behind.
+
+#include <limits>
+
+#include "app/formula.hpp"
+#include "app/scene_parts.hpp"
+
+namespace greenwater {
+namespace {
+
+constexpr std::int64_t most_iterations = std::numeric_limits<int>::max();
+
+int small_count(Section& section, const std::string& key, std::int64_t low, std::int64_t preset) {
+  const std::int64_t value = section.count(key, low, preset);
+  require_at(section.place(key), value <= most_iterations, key, " = ", value, " must be at most ", most_iterations);
+  return static_cast<int>(value);
+}
+
+void read_pressure(Section section, PressureCase& options) {
+  options.preconditioner = section.choice("preconditioner", {"jacobi", "none"}, options.preconditioner);
+  options.weights = section.choice("weights", {"kept", "recomputed"}, options.weights);
+  options.tolerance = section.number("tolerance", "-", between(0, 1), options.tolerance);
+  options.absolute_tolerance = section.number("absolute_tolerance", "Pa/m^2", at_least(0), options.absolute_tolerance);
+  require_at(section.place("tolerance"), options.tolerance > 0 || options.absolute_tolerance > 0,
+             "tolerance = 0 needs an absolute_tolerance above 0, or the solve never ends");
+  options.max_iterations = small_count(section, "max_iterations", 1, options.max_iterations);
+  options.on_stall = section.choice("on_stall", {"fail", "warn"}, options.on_stall);
+  options.source = section.choice("source", {"density", "divergence"}, options.source);
+}
+
+double not_zero(Section& section, const std::string& key, double value) {
+  require_at(section.place(key), value != 0, key, " = 0 is no effect: leave the table ", section.header(), " out");
+  return value;
+}
+
+}  // namespace
+
+void read_mps(Section mps, MpsCase& options) {
+  constexpr double least_radius = 1.1, most_radius = 10;  // x spacing: neighbours at all, and memory
+  options.scheme = mps.choice("scheme", {"classic"}, options.scheme);
+  options.spacing = mps.number("spacing", "m", positive, example(0.004));
+  options.spacing_place = mps.place("spacing");
+  options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);
+  options.expected_place = mps.place("expected_particles");
+  options.time_step = mps.number("time_step", "s", positive, example(0.00046));
+  options.time_step_place = mps.place("time_step");
+  options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
+  options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
+  options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);
+  for (auto [key, radius] : {std::pair{"radius_density", &options.radius_density},
+                             std::pair{"radius_gradient", &options.radius_gradient},
+                             std::pair{"radius_laplacian", &options.radius_laplacian}}) {
+    *radius = mps.number(key, "x spacing", between(least_radius, most_radius), *radius);
+  }
+  options.multiplication_coefficient =
+      mps.number("multiplication_coefficient", "-", at_least(1), options.multiplication_coefficient);
+  options.relaxation_factor = mps.number("relaxation_factor", "-", positive, options.relaxation_factor);
+  options.compressibility = mps.number("compressibility", "1/Pa", at_least(0), options.compressibility);
+  options.free_surface_ratio = mps.number("free_surface_ratio", "-", between(0, 1), options.free_surface_ratio);
+  read_pressure(mps.table("pressure"), options.pressure);
+}
+
+void read_effects(Section effects, Scene& scene) {
+  if (auto section = effects.table_if_present("viscosity")) {
+    const double kinematic = section->number("kinematic", "m^2/s", at_least(0), example(1e-6));
+    scene.viscosity.push_back({not_zero(*section, "kinematic", kinematic)});
+  }
+  if (auto section = effects.table_if_present("collision")) {
+    CollisionCase collision;
+    const double distance = section->number("distance", "x spacing", between(0, 1), collision.distance);
+    collision.distance = not_zero(*section, "distance", distance);
+    collision.restitution = section->number("restitution", "-", between(0, 1), collision.restitution);
+    scene.collision.push_back(collision);
+  }
+  if (auto section = effects.table_if_present("body_force")) {
+    BodyForceCase force;
+    force.acceleration = read_formulas(*section, "acceleration", "m/s^2", scene.dimension,
+                                       example(Formulas{"0.5*sin(2*pi*t)", "0", "0"}));
+    require_at(force.acceleration.place, !is_zero(compile(force.acceleration.text, force.acceleration.place)),
+               "acceleration = 0 is no effect: leave the table ", section->header(), " out");
+    scene.body_force.push_back(force);
+  }
+}
+
+void read_output(Section output, OutputCase& options) {
+  options.directory = output.text("directory", options.directory);
+  options.directory_place = output.place("directory");
+  require_at(options.directory_place, !options.directory.empty(), "directory is empty; the default is \"runs/{name}\"");
+  options.every_time = output.number("every_time", "s", at_least(0), options.every_time);
+  options.history_every_steps = small_count(output, "history_every_steps", 1, options.history_every_steps);
+  options.precision = output.choice("precision", {"float32", "float64"}, options.precision);
+  options.paraview = output.choices("paraview", {"vtp"}, options.paraview);
+}
+
+}  // namespace greenwater

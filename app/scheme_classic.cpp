@@ -1,0 +1,70 @@
+#include "app/scheme.hpp"
+#include "kernels/density.hpp"
+#include "kernels/motion.hpp"
+
+namespace greenwater {
+
+int settle_rows(Fluid& fluid) {
+  int retired = 0;
+  {
+    Region region("sort");
+    retired = fluid.grid.sort(fluid.particles);
+  }
+  Region region("rows");
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, fluid.laplacian.weight);
+  return retired;
+}
+
+namespace {
+
+class Classic : public Scheme {
+ public:
+  explicit Classic(const ClassicOptions& options)
+      : options_(options),
+        pressure_(options.pressure),
+        preconditioner_(options.jacobi ? make_jacobi() : make_identity()),
+        cg_(options.cg) {}
+
+  StepReport step(Fluid& fluid, Effects& effects, real dt) override {
+    StepReport report;
+
+    // 1  explicit part: everything but pressure
+    clear_acceleration(fluid);
+    effects.run(Stage::force, fluid, dt);
+    report.stopped = predict(fluid, dt);
+    effects.run(Stage::after_predict, fluid, dt);
+
+    // 2  who is near whom now
+    report.retired = settle_rows(fluid);
+
+    // 3  implicit part: the pressure that brings n back to n^0
+    number_density(fluid);
+    mark_surface(fluid, options_.surface_ratio);
+    report.solve = solve_pressure(fluid, dt);
+    clip_pressure(fluid);
+
+    // 4  what the pressure does
+    pressure_gradient(fluid);
+    report.stopped += correct(fluid, dt);
+    return report;
+  }
+
+ private:
+  SolveReport solve_pressure(Fluid& fluid, real dt) {
+    Region region("pressure");
+    pressure_.assemble(fluid, dt);
+    preconditioner_->update(pressure_);
+    return cg_.solve(pressure_, *preconditioner_, fluid.particles.pressure);
+  }
+
+  ClassicOptions options_;
+  PressureSystem pressure_;
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ConjugateGradient cg_;
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_classic(const ClassicOptions& options) { return std::make_unique<Classic>(options); }
+
+}  // namespace greenwater

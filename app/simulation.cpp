@@ -1,0 +1,150 @@
+#include "app/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/check.hpp"
+
+namespace greenwater {
+namespace {
+
+int body_of(const WallFaces& walls, const std::string& name) {
+  const auto found = std::find(walls.bodies.begin(), walls.bodies.end(), name);
+  expect(found != walls.bodies.end());
+  return static_cast<int>(found - walls.bodies.begin());
+}
+
+// "The lowest number there is" of a maximum over nothing.
+double or_nothing(double value) { return value < -1e300 ? std::numeric_limits<double>::quiet_NaN() : value; }
+
+template <class Value, class Field>
+Column scalar_column(const std::string& name, const std::string& unit, const Field& field, int count) {
+  const auto host = Kokkos::create_mirror_view(field);
+  Kokkos::deep_copy(host, field);
+  std::vector<Value> values(count);
+  for (int i = 0; i < count; ++i) values[i] = static_cast<Value>(host(i));
+  return {name, unit, 1, std::move(values)};
+}
+
+template <class Field>
+Column vector_column(const std::string& name, const std::string& unit, const Field& field, int count) {
+  const auto host = Kokkos::create_mirror_view(field);
+  Kokkos::deep_copy(host, field);
+  const int dim = static_cast<int>(field.extent(1));
+  std::vector<double> values(static_cast<std::size_t>(count) * dim);
+  for (int i = 0; i < count; ++i)
+    for (int d = 0; d < dim; ++d) values[static_cast<std::size_t>(i) * dim + d] = host(i, d);
+  return {name, unit, dim, std::move(values)};
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene)
+    : scene_(scene),
+      walls_(build_walls(scene)),
+      fluid_(build_fluid(scene, walls_)),
+      effects_(build_effects(scene)),
+      scheme_(build_scheme(scene)) {
+  // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
+  const Extent extent = scene_extent(scene_, walls_);
+  for (int d = 0; d < 3; ++d) potential_zero_[d] = scene_.gravity[d] > 0 ? extent.high[d] : extent.low[d];
+  first_energy_ = energy(fluid_sums(fluid_, potential_zero_));
+}
+
+void Simulation::step() {
+  Region region("step");
+  last_ = scheme_->step(fluid_, effects_, static_cast<real>(dt()));
+  ++steps_;
+  fluid_.time = static_cast<real>(steps_ * dt());
+  look_after(last_);
+}
+
+void Simulation::look_after(const StepReport& report) {
+  retired_ += report.retired;
+  if (report.stopped > 0)
+    note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
+  if (report.retired > 0)
+    note("lost", text_of(report.retired, " particles left the domain and were retired"), report.retired);
+  if (report.solve.converged) return;
+  const std::string text =
+      text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",
+              report.solve.iterations, " iterations, relative residual ", report.solve.residual);
+  require<NumericsError>(scene_.mps.pressure.on_stall == "warn" && std::isfinite(report.solve.residual), text,
+                         "; a smaller mps.time_step, or mps.pressure.max_iterations larger, may help");
+  note("stall", text, 1);
+}
+
+void Simulation::note(const std::string& kind, const std::string& text, std::int64_t count) {
+  const auto same = std::find_if(notices_.begin(), notices_.end(), [&](const Notice& n) { return n.kind == kind; });
+  if (same == notices_.end())
+    notices_.push_back({kind, text, count});
+  else
+    same->count += count;
+}
+
+StepFacts Simulation::facts() {
+  const FluidSums sums = fluid_sums(fluid_, potential_zero_);
+  require<NumericsError>(std::isfinite(sums.max_speed), "step ", steps_, ", t = ", time(),
+                         " s: a velocity is not a number any more");
+  StepFacts facts;
+  facts.step = steps_;
+  facts.time = time();
+  facts.dt = dt();
+  facts.iterations = last_.solve.iterations;
+  facts.residual = last_.solve.residual;
+  facts.max_speed = sums.max_speed;
+  facts.cfl = sums.max_speed * dt() / scene_.mps.spacing;
+  facts.kinetic_energy = sums.kinetic;
+  facts.potential_energy = sums.potential;
+  facts.energy_ratio = first_energy_ > 0 ? energy(sums) / first_energy_ : 1;
+  facts.density_error = sums.density_error;
+  facts.particles = fluid_.particles.count;
+  facts.lost = retired_;
+  if (facts.cfl > scene_.mps.cfl_warn)
+    note("cfl", text_of("max speed x dt / spacing = ", facts.cfl, " is above mps.cfl_warn = ", scene_.mps.cfl_warn), 1);
+  facts.notices = std::exchange(notices_, {});
+  return facts;
+}
+
+double Simulation::sample(std::size_t index) {
+  const ProbeCase& probe = scene_.probes[index];
+  if (probe.kind == "wave_front") return or_nothing(wave_front(fluid_));
+  if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x));
+  if (probe.kind == "wall_pressure") return sampler_.pressure(fluid_, {probe.point}).front();
+  if (probe.kind == "wall_force") {
+    const auto patches = wall_patches(walls_, body_of(walls_, probe.wall), fluid_.spacing);
+    return wall_force(sampler_, fluid_, patches)[probe.component == "y" ? 1 : 0];
+  }
+  expect(probe.kind == "particle_count");
+  if (probe.min == probe.max) return static_cast<double>(fluid_.particles.count);
+  return static_cast<double>(particle_count(fluid_, probe.min, probe.max));
+}
+
+std::string Simulation::probe_unit(std::size_t index) const {
+  const std::string& kind = scene_.probes[index].kind;
+  if (kind == "wall_pressure") return "Pa";
+  if (kind == "wall_force") return scene_.dimension == 2 ? "N/m" : "N";
+  return kind == "particle_count" ? "-" : "m";
+}
+
+Table Simulation::fluid_table() const {
+  const Particles& p = fluid_.particles;
+  Table table{scene_.fluid.name, time(), steps_, static_cast<std::size_t>(p.count), {}};
+  table.columns.push_back(scalar_column<std::int64_t>("id", "-", p.id, p.count));
+  table.columns.push_back(vector_column("position", "m", p.position, p.count));
+  table.columns.push_back(vector_column("velocity", "m/s", p.velocity, p.count));
+  table.columns.push_back(scalar_column<double>("pressure", "Pa", p.pressure, p.count));
+  table.columns.push_back(scalar_column<double>("number_density", "-", p.number_density, p.count));
+  table.columns.push_back(scalar_column<std::uint8_t>("surface", "-", p.surface, p.count));
+  return table;
+}
+
+std::vector<std::array<double, 6>> Simulation::wall_segments() const {
+  std::vector<std::array<double, 6>> segments;
+  for (const WallFace& face : walls_.faces)
+    segments.push_back({face.end[0][0], face.end[0][1], face.end[0][2], face.end[1][0], face.end[1][1], face.end[1][2]});
+  return segments;
+}
+
+}  // namespace greenwater

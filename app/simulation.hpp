@@ -1,0 +1,58 @@
+#pragma once
+// A scene that marches: step it, and ask it how it is.
+
+#include "app/build.hpp"
+#include "core/table.hpp"
+#include "io/step_facts.hpp"
+#include "kernels/sample.hpp"
+
+namespace greenwater {
+
+class Simulation {
+ public:
+  /// Throws CaseError when the scene cannot be built.
+  explicit Simulation(const Scene& scene);
+
+  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or a
+  /// number is none any more; the state is then that of the failed step.
+  void step();
+
+  double time() const { return fluid_.time; }
+  std::int64_t steps() const { return steps_; }
+  double dt() const { return scene_.mps.time_step; }
+
+  /// The numbers of the last step; its notices are handed out once.
+  StepFacts facts();
+
+  /// The value of a probe now; not a number where there is nothing to measure.
+  double sample(std::size_t probe);
+  std::string probe_unit(std::size_t probe) const;
+
+  /// id, position, velocity, pressure, number_density and surface of every particle, in the order of the grid.
+  Table fluid_table() const;
+
+  /// x, y, z of both ends of every wall [m].
+  std::vector<std::array<double, 6>> wall_segments() const;
+
+  const Fluid& fluid() const { return fluid_; }
+  const Effects& effects() const { return effects_; }
+
+ private:
+  void note(const std::string& kind, const std::string& text, std::int64_t count);
+  void look_after(const StepReport& report);
+  double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
+
+  Scene scene_;
+  WallFaces walls_;
+  Fluid fluid_;
+  Effects effects_;
+  std::unique_ptr<Scheme> scheme_;
+  PointSampler sampler_;
+  Point potential_zero_{};
+  double first_energy_ = 0;
+  std::int64_t steps_ = 0, retired_ = 0;
+  StepReport last_;
+  std::vector<Notice> notices_;
+};
+
+}  // namespace greenwater

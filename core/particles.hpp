@@ -1,0 +1,52 @@
+#pragma once
+// The fluid: one entry per particle in every field. Fields may be longer than `count`; only the first `count` entries
+// mean anything.
+
+#include <string>
+#include <vector>
+
+#include "core/fields.hpp"
+
+namespace greenwater {
+
+/// A vector per particle that an effect adds; it is re-ordered with the others.
+struct ExtraField {
+  std::string name;
+  std::string unit;
+  VectorField values;
+};
+
+struct Particles {
+  int dim = 2;                 // 2 or 3
+  int count = 0;               // particles now; falls when some are retired
+  IndexField id;               // number given at the start, kept for life
+  CoordField position;         // x   [m]
+  VectorField velocity;        // u   [m/s]
+  VectorField acceleration;    // du/dt of the explicit forces, then of the pressure [m/s^2]
+  ScalarField pressure;        // p   [Pa]
+  ScalarField number_density;  // n   sum of weights [-]
+  FlagField surface;           // 1 = free surface, p = 0
+  std::vector<ExtraField> extras;
+};
+
+/// Room for `count` particles, all fields zero, ids 0, 1, 2 ...
+Particles make_particles(int dim, int count);
+
+/// Adds a vector field of zeros and returns its place in `extras`.
+int add_extra(Particles& particles, const std::string& name, const std::string& unit);
+
+/// Re-orders particles; keeps its scratch memory, so that a steady step allocates nothing.
+class Reorder {
+ public:
+  /// Entry k of every field becomes the old entry order(k), k < kept; the count becomes `kept`.
+  void apply(Particles& particles, const IndexField& order, int kept);
+
+ private:
+  IndexField index_;
+  CoordField coord_;
+  VectorField vector_;
+  ScalarField scalar_;
+  FlagField flag_;
+};
+
+}  // namespace greenwater

@@ -1,0 +1,108 @@
+#include "io/paraview.hpp"
+
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "core/check.hpp"
+#include "io/file.hpp"
+#include "io/vtp.hpp"
+
+namespace greenwater {
+namespace {
+
+constexpr int vtk_axes = 3;
+
+/// Real values in float32, vectors with the missing components as 0.
+std::vector<float> padded(const Column& column, std::size_t rows) {
+  const auto components = static_cast<std::size_t>(column.components);
+  const std::size_t width = components > 1 ? static_cast<std::size_t>(vtk_axes) : 1;
+  std::vector<float> out(rows * width, 0.0F);
+  std::visit(
+      [&](const auto& values) {
+        expect(values.size() == rows * components);
+        for (std::size_t i = 0; i < rows; ++i) {
+          for (std::size_t d = 0; d < components; ++d) {
+            out[i * width + d] = static_cast<float>(values[i * components + d]);
+          }
+        }
+      },
+      column.values);
+  return out;
+}
+
+void add_point_data(Vtp& vtp, const Column& column, std::size_t rows) {
+  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&column.values)) {
+    vtp.add(Vtp::Section::point_data, column.name, "Int64", column.components, *whole);
+  } else if (const auto* flags = std::get_if<std::vector<std::uint8_t>>(&column.values)) {
+    vtp.add(Vtp::Section::point_data, column.name, "UInt8", column.components, *flags);
+  } else {
+    const int width = column.components > 1 ? vtk_axes : 1;
+    vtp.add(Vtp::Section::point_data, column.name, "Float32", width, padded(column, rows));
+  }
+}
+
+std::vector<std::int32_t> counting(std::size_t count, std::int32_t first) {
+  std::vector<std::int32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), first);
+  return numbers;
+}
+
+std::string particles(const Table& table) {
+  Vtp vtp(table.rows, table.rows, 0);
+  vtp.add(Vtp::Section::field_data, "TimeValue", "Float64", 1, std::vector<double>{table.time});
+  for (const Column& column : table.columns) {
+    if (column.name == "position") {
+      vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, padded(column, table.rows));
+    } else {
+      add_point_data(vtp, column, table.rows);
+    }
+  }
+  vtp.add(Vtp::Section::verts, "connectivity", "Int32", 1, counting(table.rows, 0));
+  vtp.add(Vtp::Section::verts, "offsets", "Int32", 1, counting(table.rows, 1));
+  return vtp.text();
+}
+
+}  // namespace
+
+Paraview::Paraview(const std::filesystem::path& folder, const std::string& name) : folder_(folder), name_(name) {
+  make_folder(folder / name);
+}
+
+void Paraview::write(const Table& table) {
+  const std::string file = fmt::format("{0}/{0}_{1:06d}.vtp", name_, frames_);
+  require_room(folder_, vtp_bytes(table));
+  write_atomically(folder_ / file, particles(table));
+  entries_ += fmt::format("<DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", table.time, file);
+  write_atomically(folder_ / (name_ + ".pvd"),
+                   "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" + entries_ +
+                       "</Collection>\n</VTKFile>\n");
+  ++frames_;
+}
+
+void write_walls(const std::filesystem::path& path, const std::vector<Segment>& segments) {
+  std::vector<float> ends;
+  for (const Segment& segment : segments) {
+    for (const double coordinate : segment) ends.push_back(static_cast<float>(coordinate));
+  }
+  std::vector<std::int32_t> offsets(segments.size());
+  for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = static_cast<std::int32_t>(2 * (i + 1));
+  Vtp vtp(2 * segments.size(), 0, segments.size());
+  vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, ends);
+  vtp.add(Vtp::Section::lines, "connectivity", "Int32", 1, counting(2 * segments.size(), 0));
+  vtp.add(Vtp::Section::lines, "offsets", "Int32", 1, offsets);
+  write_atomically(path, vtp.text());
+}
+
+double vtp_bytes(const Table& table) {
+  constexpr double header = 4e3, per_row = 8;  // text; connectivity and offset
+  double bytes = header + per_row * static_cast<double>(table.rows);
+  for (const Column& column : table.columns) {
+    const double width = column.components > 1 ? vtk_axes : 1;
+    const double size = column.values.index() < 2 ? 4 : column.values.index() == 2 ? 8 : 1;
+    bytes += width * size * static_cast<double>(table.rows);
+  }
+  return bytes;
+}
+
+}  // namespace greenwater

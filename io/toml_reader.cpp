@@ -1,0 +1,149 @@
+// The one file that knows the TOML library: text to CaseNode.
+
+#include <algorithm>
+#include <charconv>
+#include <regex>
+#include <sstream>
+
+#include <toml++/toml.h>
+
+#include "io/case_node.hpp"
+
+namespace greenwater {
+namespace {
+
+/// Makes the places of one file.
+struct Text {
+  std::string file;
+  std::shared_ptr<const std::vector<std::string>> lines;
+
+  Place at(const toml::source_region& region) const {
+    Place place{file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column), 1, lines};
+    if (region.end.line == region.begin.line && region.end.column > region.begin.column) {
+      place.length = static_cast<int>(region.end.column - region.begin.column);
+    }
+    return place;
+  }
+};
+
+Text split(const std::string& text, const std::string& file) {
+  auto lines = std::make_shared<std::vector<std::string>>();
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    lines->push_back(line);
+  }
+  return {file, std::move(lines)};
+}
+
+CaseNode convert(const toml::node& source, const Text& text);
+
+void convert_table(const toml::table& table, const Text& text, CaseNode& node) {
+  node.kind = CaseNode::Kind::table;
+  for (const auto& [key, value] : table) {
+    CaseNode child = convert(value, text);
+    child.key = std::string(key.str());
+    child.key_place = text.at(key.source());
+    node.children.push_back(std::move(child));
+  }
+  std::stable_sort(node.children.begin(), node.children.end(), [](const CaseNode& a, const CaseNode& b) {
+    return std::pair(a.key_place.line, a.key_place.column) < std::pair(b.key_place.line, b.key_place.column);
+  });
+}
+
+CaseNode convert(const toml::node& source, const Text& text) {
+  CaseNode node;
+  node.place = text.at(source.source());
+  if (const auto* table = source.as_table()) {
+    convert_table(*table, text, node);
+  } else if (const auto* list = source.as_array()) {
+    node.kind = CaseNode::Kind::list;
+    for (const auto& item : *list) node.children.push_back(convert(item, text));
+  } else if (const auto* words = source.as_string()) {
+    node.kind = CaseNode::Kind::text;
+    node.text = words->get();
+  } else if (const auto* whole = source.as_integer()) {
+    node.kind = CaseNode::Kind::whole;
+    node.whole = whole->get();
+  } else if (const auto* real = source.as_floating_point()) {
+    node.kind = CaseNode::Kind::real;
+    node.real = real->get();
+  } else if (const auto* flag = source.as_boolean()) {
+    node.kind = CaseNode::Kind::flag;
+    node.flag = flag->get();
+  } else {
+    node.kind = CaseNode::Kind::date;
+  }
+  return node;
+}
+
+/// What to do about a syntax error, from the library's words and the line that it stands on.
+std::string cure(const std::string& fault, const std::string& line) {
+  static const std::regex bare_point(R"((^|[^0-9])\.[0-9])");
+  static const std::regex open_point(R"([0-9]\.([^0-9]|$))");
+  static const std::regex bare_word(R"(=\s*[A-Za-z])");
+  const std::string value = line.substr(std::min(line.find('='), line.size()));
+  if (fault.find("redefine") != std::string::npos) return "; a key or table stands only once: delete or rename one";
+  if (line.starts_with('[') && fault.find("expected ']'") != std::string::npos) return "; close the bracket: [name]";
+  if (value.empty() && line.find('[') == std::string::npos) return "; a line is `key = value`, `[table]` or `# comment`";
+  if (std::regex_search(value, bare_point)) return "; write a digit before the point: 0.5, not .5";
+  if (std::regex_search(value, open_point)) return "; write a digit after the point: 5.0, not 5.";
+  if (std::regex_search(value, bare_word)) return "; a text needs quotes: key = \"text\"";
+  if (std::count(line.begin(), line.end(), '"') % 2 == 1) return "; a closing quote is missing";
+  return {};
+}
+
+std::string plain(std::string_view description) {
+  std::string text(description);
+  const std::string noise = "Error while parsing ";
+  if (text.starts_with(noise)) text = "in " + text.substr(noise.size());
+  return text;
+}
+
+toml::table parsed(const std::string& text, const Text& places) {
+  try {
+    return toml::parse(text, places.file);
+  } catch (const toml::parse_error& fault) {
+    const Place place = places.at(fault.source());
+    const auto row = static_cast<std::size_t>(place.line);
+    const std::string line = row >= 1 && row <= places.lines->size() ? (*places.lines)[row - 1] : "";
+    const std::string what = plain(fault.description());
+    refuse(place, "not valid TOML: ", what, cure(what, line));
+  }
+}
+
+void mark_as_option(CaseNode& node, const Place& option) {
+  node.origin = Origin::option;
+  node.place = node.key_place = option;
+  for (CaseNode& child : node.children) mark_as_option(child, option);
+}
+
+CaseNode plain_value(const std::string& value) {
+  CaseNode node;
+  const auto [end, fault] = std::from_chars(value.data(), value.data() + value.size(), node.real);
+  const bool number = fault == std::errc() && end == value.data() + value.size() && !value.empty();
+  node.kind = number ? CaseNode::Kind::real : CaseNode::Kind::text;
+  node.text = value;
+  return node;
+}
+
+}  // namespace
+
+CaseNode parse_toml(const std::string& text, const std::string& file_name) {
+  const Text places = split(text, file_name);
+  return convert(parsed(text, places), places);
+}
+
+CaseNode parse_option_value(const std::string& value, const std::string& option) {
+  CaseNode node;
+  try {
+    const toml::table table = toml::parse("value = " + value + "\n");
+    node = table.size() == 1 ? convert(*table.get("value"), Text{}) : plain_value(value);
+  } catch (const toml::parse_error&) {
+    node = plain_value(value);
+  }
+  mark_as_option(node, Place{option, 0, 0, 1, nullptr});
+  return node;
+}
+
+}  // namespace greenwater

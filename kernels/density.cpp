@@ -1,0 +1,51 @@
+#include "kernels/density.hpp"
+
+namespace greenwater {
+namespace {
+
+template <int Dim>
+void number_density_in(const Fluid& fluid, const ScalarField& n) {
+  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto w = fluid.density.weight;
+  Kokkos::parallel_for(
+      "greenwater::number_density", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
+        real sum = 0;
+        around.for_each(i, [&](int, const Vec<Dim>& r, const Mirror*) { sum += w(sqrt(dot(r, r))); });
+        n(i) = sum;
+      });
+}
+
+template <int Dim>
+void mark_surface_in(const Fluid& fluid, real ratio, const FlagField& surface) {
+  const auto n = Read<ScalarField>(fluid.particles.number_density);
+  const auto first = Read<OffsetField>(fluid.rows.near.first);
+  const real limit = ratio * fluid.density.reference.n0;
+  Kokkos::parallel_for(
+      "greenwater::mark_surface", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
+        surface(i) = n(i) < limit || first(i + 1) - first(i) < Dim + 1;
+      });
+}
+
+}  // namespace
+
+void number_density(Fluid& fluid) {
+  const ScalarField n = fluid.particles.number_density;
+  fluid.particles.dim == 2 ? number_density_in<2>(fluid, n) : number_density_in<3>(fluid, n);
+}
+
+void mark_surface(Fluid& fluid, real ratio) {
+  const FlagField surface = fluid.particles.surface;
+  fluid.particles.dim == 2 ? mark_surface_in<2>(fluid, ratio, surface) : mark_surface_in<3>(fluid, ratio, surface);
+}
+
+real largest_compression(const Fluid& fluid) {
+  if (fluid.particles.count == 0) return 0;
+  const auto n = Read<ScalarField>(fluid.particles.number_density);
+  real largest = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::largest_compression", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i, real& most) { most = larger(most, n(i)); }, Kokkos::Max<real>(largest));
+  return largest / fluid.density.reference.n0 - 1;
+}
+
+}  // namespace greenwater

@@ -1,0 +1,71 @@
+#pragma once
+// Optional physics: one file per effect, one list per stage. What a scene does not name is not in a list, launches
+// nothing and holds nothing.
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "core/region.hpp"
+#include "kernels/fluid.hpp"
+
+namespace greenwater {
+
+enum class Stage {
+  force,         // adds to the acceleration, at x and u of the step's start
+  after_predict  // changes x* and u*; the rows are those of the last build, distances those of now
+};
+constexpr std::size_t stages = 2;
+
+/// One optional piece of physics. Its name is its case-file key, its kernel label and its row in the time table.
+class Effect {
+ public:
+  virtual ~Effect() = default;
+  virtual std::string_view name() const = 0;
+  virtual Stage stage() const = 0;
+  virtual void apply(Fluid& fluid, real dt) = 0;
+};
+
+class Effects {
+ public:
+  void add(std::unique_ptr<Effect> effect) {
+    auto& list = list_[static_cast<std::size_t>(effect->stage())];
+    list.push_back(std::move(effect));
+  }
+
+  void run(Stage stage, Fluid& fluid, real dt) {
+    for (auto& effect : list_[static_cast<std::size_t>(stage)]) {
+      Region region(effect->name());
+      effect->apply(fluid, dt);
+    }
+  }
+
+  const std::vector<std::unique_ptr<Effect>>& at(Stage stage) const { return list_[static_cast<std::size_t>(stage)]; }
+
+ private:
+  std::array<std::vector<std::unique_ptr<Effect>>, stages> list_;
+};
+
+/// acceleration += nu (2 d / (lambda n^0)) sum_j (u_j - u_i) w_ij (Koshizuka and Oka 1996); walls slip freely.
+/// `kinematic`: nu [m^2/s].
+std::unique_ptr<Effect> make_viscosity(real kinematic);
+
+struct CollisionOptions {
+  real distance = 0.85;    // x spacing: closer than this and approaching, two particles collide
+  real restitution = 0.2;  // of their relative normal speed [-]
+  int sweeps = 5;          // at most: who bounces off a wall may meet the next one behind
+};
+
+/// Particles that come too close bounce: their normal approach speed U becomes -restitution U, shared evenly, and they
+/// move on with the change. A particle in several collisions at once takes the mean of them, so that no energy is made.
+std::unique_ptr<Effect> make_collision(const CollisionOptions& options);
+
+/// A force per mass at a place and time: f(x, y, z, t, out), out in m/s^2.
+using ForceField = std::function<void(double x, double y, double z, double t, double* out)>;
+
+/// Adds a force per mass to that of gravity, evaluated on the host for each particle and step.
+std::unique_ptr<Effect> make_body_force(ForceField force);
+
+}  // namespace greenwater

@@ -1,0 +1,64 @@
+#pragma once
+// What kernels and effects are given: the particles, their walls and their neighbours.
+
+#include "core/particles.hpp"
+#include "kernels/mirror_wall.hpp"
+#include "kernels/neighbor_rows.hpp"
+#include "kernels/weight.hpp"
+
+namespace greenwater {
+
+/// A weight function with its lattice sums.
+struct Kernel {
+  Weight weight;
+  Reference reference;
+};
+
+struct Fluid {
+  Particles particles;
+  MirrorWalls walls;
+  CellGrid grid;           // the particles are in its order since the last sort
+  NeighborRows rows;       // with the weight of the Laplacian beside each entry
+  Kernel density;          // of n
+  Kernel gradient;         // of grad p and div u
+  Kernel laplacian;        // of the pressure operator and of viscosity
+  coord spacing = 0;       // l0 [m]
+  real rho = 1000;         // [kg/m^3]
+  real gravity[3] = {0, 0, 0};  // g [m/s^2]
+  real time = 0;           // t at the start of the step [s]
+  int body_force = -1;     // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
+};
+
+/// Device view of all that drives a particle beside pressure: g, and a body force where a scene names one.
+template <int Dim>
+struct Drive {
+  real gravity[3];
+  Read<VectorField> extra;
+  bool has_extra;
+
+  KOKKOS_INLINE_FUNCTION Vec<Dim> at(int i) const {
+    Vec<Dim> g;
+    for (int d = 0; d < Dim; ++d) g[d] = gravity[d] + (has_extra ? extra(i, d) : real(0));
+    return g;
+  }
+};
+
+template <int Dim>
+Drive<Dim> drive_of(const Fluid& fluid) {
+  const bool extra = fluid.body_force >= 0;
+  return {{fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]},
+          extra ? Read<VectorField>(fluid.particles.extras[fluid.body_force].values) : Read<VectorField>(),
+          extra};
+}
+
+/// What the pressure of an image is above that of its particle, per density: (g - a_w) . (x_img - x_j). It belongs to
+/// gradients, loads and probes; never to the pressure rows, whose source carries gravity and the wall's motion already.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION real image_offset(const Mirror& m, const Vec<Dim>& g, const Vec<Dim, coord>& x) {
+  const auto image = image_position(m, x);
+  real sum = 0;
+  for (int d = 0; d < Dim; ++d) sum += (g[d] - m.acceleration[d]) * static_cast<real>(image[d] - x[d]);
+  return sum;
+}
+
+}  // namespace greenwater

@@ -1,0 +1,169 @@
+#include "kernels/neighbor_rows.hpp"
+
+namespace greenwater {
+namespace {
+
+// Everything a row needs: who may be near, who is in sight, and how much it weighs.
+template <int Dim>
+struct Search {
+  Read<CoordField> x;
+  Read<IndexField> cell_first;
+  GridShape grid;
+  MirrorWalls walls;
+  Weight weight;
+
+  KOKKOS_INLINE_FUNCTION real weight_between(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
+    const auto r = difference(b, a);
+    return weight(static_cast<real>(sqrt(dot(r, r))));
+  }
+
+  // Calls f(j, w) for every neighbour of i.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void neighbours(int i, F f) const {
+    const auto xi = load<Dim>(x, i);
+    const auto sight = sight_from(walls, grid, xi);
+    for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
+      if (j == i) return;
+      const auto xj = load<Dim>(x, j);
+      const real w = weight_between(xi, xj);
+      if (w > 0 && (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, w);
+    });
+  }
+
+  // Calls f(j, k, w) for every image, of particle j in mirror k, that i sees.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void images(int i, F f) const {
+    const auto xi = load<Dim>(x, i);
+    const auto sight = sight_from(walls, grid, xi);
+    for (int m = sight.begin; m < sight.end; ++m) {
+      const int k = walls.reach(m);
+      const Mirror& mirror = walls.mirror(k);
+      if (out_of_reach(mirror, xi)) continue;
+      for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
+        const auto xj = load<Dim>(x, j);
+        // Always from the lower index: the same number for both, to the last bit.
+        const bool forward = i <= j;
+        const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
+        const real w = weight_between(a, image_position(mirror, b));
+        if (w > 0 && sight.sees_image(k, a, b)) f(j, k, w);
+      });
+    }
+  }
+
+  // An image is at least as far as its wall, or its corner, is.
+  KOKKOS_INLINE_FUNCTION bool out_of_reach(const Mirror& mirror, const Vec<Dim, coord>& xi) const {
+    if (!Sight<Dim>::is_face(mirror)) return weight_between(xi, load_point(mirror)) <= 0;
+    return fabs(Sight<Dim>::side(mirror, xi)) >= weight.radius;
+  }
+
+  KOKKOS_INLINE_FUNCTION static Vec<Dim, coord> load_point(const Mirror& mirror) {
+    Vec<Dim, coord> c;
+    for (int d = 0; d < Dim; ++d) c[d] = mirror.end[0][d];
+    return c;
+  }
+};
+
+template <int Dim>
+void count_neighbours_in(const Search<Dim>& search, const OffsetField& number, int count) {
+  Kokkos::parallel_for(
+      "greenwater::count_neighbours", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        std::int64_t n = 0;
+        search.neighbours(i, [&](int, real) { ++n; });
+        number(i) = n;
+      });
+}
+
+template <int Dim>
+void fill_neighbours_in(const Search<Dim>& search, const Rows& rows, int count) {
+  Kokkos::parallel_for(
+      "greenwater::fill_neighbours", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        auto k = rows.first(i);
+        search.neighbours(i, [&](const int j, const real w) {
+          rows.index(k) = j;
+          rows.weight(k++) = w;
+        });
+      });
+}
+
+template <int Dim>
+void count_images_in(const Search<Dim>& search, const OffsetField& number, int count) {
+  Kokkos::parallel_for(
+      "greenwater::count_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        std::int64_t n = 0;
+        search.images(i, [&](int, int, real) { ++n; });
+        number(i) = n;
+      });
+}
+
+template <int Dim>
+void fill_images_in(const Search<Dim>& search, const ImageRows& rows, int count) {
+  Kokkos::parallel_for(
+      "greenwater::fill_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        auto k = rows.first(i);
+        search.images(i, [&](const int j, const int m, const real w) {
+          rows.index(k) = j;
+          rows.mirror(k) = m;
+          rows.weight(k++) = w;
+        });
+      });
+}
+
+// Numbers become places; returns how many entries there are in all.
+std::int64_t begin_rows(const OffsetField& first, int count) {
+  std::int64_t total = 0;
+  Kokkos::parallel_scan(
+      "greenwater::begin_rows", Range(0, count + 1),
+      KOKKOS_LAMBDA(const int i, std::int64_t& sum, const bool last) {
+        const std::int64_t here = i < count ? first(i) : 0;
+        if (last) first(i) = sum;
+        sum += here;
+      },
+      total);
+  return total;
+}
+
+void grow_first(OffsetField& first, int count) {
+  if (static_cast<int>(first.extent(0)) < count + 1)
+    first = uncleared<OffsetField>("greenwater::row_first", count + 1);
+}
+
+// A quarter more than is needed now, so that a splash does not regrow the rows at each step.
+std::int64_t roomy(std::int64_t entries) { return entries + entries / 4 + 64; }
+
+template <int Dim>
+void build_in(NeighborRows& rows, const Search<Dim>& search, int count, std::int64_t& near, std::int64_t& image) {
+  grow_first(rows.near.first, count);
+  count_neighbours_in(search, rows.near.first, count);
+  near = begin_rows(rows.near.first, count);
+  if (static_cast<std::int64_t>(rows.near.index.extent(0)) < near) {
+    rows.near.index = uncleared<IndexField>("greenwater::row_index", roomy(near));
+    rows.near.weight = uncleared<ScalarField>("greenwater::row_weight", roomy(near));
+  }
+  fill_neighbours_in(search, rows.near, count);
+  if (search.walls.count == 0) return;
+  grow_first(rows.images.first, count);
+  count_images_in(search, rows.images.first, count);
+  image = begin_rows(rows.images.first, count);
+  if (static_cast<std::int64_t>(rows.images.index.extent(0)) < image) {
+    rows.images.index = uncleared<IndexField>("greenwater::image_index", roomy(image));
+    rows.images.mirror = uncleared<IndexField>("greenwater::image_mirror", roomy(image));
+    rows.images.weight = uncleared<ScalarField>("greenwater::image_weight", roomy(image));
+  }
+  fill_images_in(search, rows.images, count);
+}
+
+}  // namespace
+
+void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
+                         const Weight& weight) {
+  mirrors = walls.mirror;
+  const int count = particles.count;
+  if (particles.dim == 2)
+    build_in<2>(*this, {particles.position, grid.first(), grid.shape(), walls, weight}, count, entries_,
+                image_entries_);
+  else
+    build_in<3>(*this, {particles.position, grid.first(), grid.shape(), walls, weight}, count, entries_,
+                image_entries_);
+}
+
+}  // namespace greenwater

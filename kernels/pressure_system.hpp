@@ -1,0 +1,45 @@
+#pragma once
+// The pressure Poisson equation, never stored as a matrix: A p = b with A the MPS Laplacian (sign turned), from the rows.
+
+#include "kernels/fluid.hpp"
+
+namespace greenwater {
+
+enum class PressureSource { density, divergence };
+
+struct PressureOptions {
+  real diagonal_factor = 1;    // C    multiplies the diagonal (Tanaka and Masunaga 2010; the paper's Table 2: 1.05)
+  real source_factor = 1;      // gamma  multiplies the density source (the paper's Table 2: 1.0)
+  real compressibility = 0;    // alpha_c [1/Pa]; adds rho alpha_c / dt^2 to the diagonal
+  PressureSource source = PressureSource::density;
+  bool keep_weights = true;    // false: computed from the positions each time, a third of the memory
+};
+
+/// (A p)_i = K (C p_i sum_j w_ij - sum_j w_ij p_j) + (rho alpha_c / dt^2) p_i,  K = 2 d / (lambda n^0); j runs over
+/// neighbours and images, and an image has the pressure of its particle: the wall's Neumann condition is in the source.
+/// Where the surface is marked p = 0: those rows are left out, and A is symmetric positive definite on the others.
+///   density     b_i = gamma (rho / dt^2) (n_i - n^0) / n^0
+///   divergence  b_i = -(rho / dt) (d / n^0) sum_j (u_j - u_i) . r_ij w_ij / r_ij^2
+class PressureSystem {
+ public:
+  explicit PressureSystem(const PressureOptions& options) : options_(options) {}
+
+  /// Right side and diagonal from the particles' number density, surface marks, velocity and rows.
+  /// `fluid` must outlive every apply() until the next assemble().
+  void assemble(const Fluid& fluid, real dt);
+
+  /// Ap = A p; 0 where the surface is.
+  void apply(const ScalarField& p, const ScalarField& Ap) const;
+
+  int count() const { return fluid_ ? fluid_->particles.count : 0; }
+  const ScalarField& rhs() const { return rhs_; }             // b [Pa/m^2]
+  const ScalarField& diagonal() const { return diagonal_; }   // [1/m^2]; 1 where the surface is
+  const FlagField& fixed() const { return fluid_->particles.surface; }
+
+ private:
+  PressureOptions options_;
+  const Fluid* fluid_ = nullptr;
+  ScalarField rhs_, diagonal_;
+};
+
+}  // namespace greenwater

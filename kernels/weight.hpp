@@ -1,0 +1,28 @@
+#pragma once
+// The weight function and what it sums to on the regular lattice.
+
+#include "core/fields.hpp"
+
+namespace greenwater {
+
+/// w(r) = r_e / (r + s r_e) - 1 / (1 + s) for r < r_e, else 0. The paper's Eq. 3 has s = 0.05, which keeps w finite for
+/// touching particles; s = 0 is the usual r_e / r - 1 (Koshizuka and Oka 1996).
+struct Weight {
+  real radius = 0;  // r_e [m]
+  real shift = 0;   // s [-]
+
+  KOKKOS_INLINE_FUNCTION real operator()(real r) const {
+    return r < radius ? radius / (r + shift * radius) - 1 / (1 + shift) : real(0);
+  }
+};
+
+/// Sums over the regular lattice.
+struct Reference {
+  real n0 = 0;      // n^0       sum of w [-]
+  real lambda = 0;  // lambda^0  sum of w r^2 / sum of w [m^2]
+};
+
+/// Lattice sums around a particle of a square (cubic) lattice with the given spacing [m].
+Reference lattice_reference(const Weight& weight, int dim, coord spacing);
+
+}  // namespace greenwater

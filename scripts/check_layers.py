@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Checks that the folders include each other only as agreed, and that Kokkos stays where it belongs.
+
+Prints file:line for each breach; exit code 1 if there is any.
+"""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+# Folder -> the folders it may include, besides itself.
+ALLOWED = {
+    "core": set(),
+    "kernels": {"core"},
+    "fem": {"core"},
+    "io": {"core"},
+    "coupling": {"core", "kernels", "fem"},
+    "app": {"core", "kernels", "fem", "io", "coupling"},
+}
+ALLOWED["tests"] = ALLOWED["bench"] = set(ALLOWED)
+WITHOUT_KOKKOS = ("io", "fem")
+INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+
+def code_lines(path):
+    """The lines of a file with comments blanked, so that text about Kokkos is free."""
+    text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m[0].count("\n"), path.read_text(), flags=re.S)
+    return [line.split("//")[0] for line in text.splitlines()]
+
+
+def brings_kokkos(header, seen):
+    """Whether including this header of ours includes Kokkos, directly or through others."""
+    path = ROOT / header
+    if header in seen or not path.is_file():
+        return False
+    seen.add(header)
+    found = [m[2] for m in map(INCLUDE.match, code_lines(path)) if m]
+    return any(name.startswith("Kokkos") for name in found) or any(brings_kokkos(name, seen) for name in found)
+
+
+def breaches(path):
+    name = path.relative_to(ROOT).as_posix()
+    folder = name.split("/")[0]
+    for number, line in enumerate(code_lines(path), 1):
+        include = INCLUDE.match(line)
+        if include:
+            header, first = include[2], include[2].split("/")[0]
+            if include[1] == '"' and first in ALLOWED and first != folder and first not in ALLOWED[folder]:
+                yield number, f"{folder}/ must not include {first}/ ({header})"
+            if folder in WITHOUT_KOKKOS and (header.startswith("Kokkos") or brings_kokkos(header, set())):
+                yield number, f"{folder}/ must stay free of Kokkos, which {header} brings"
+        if name == "core/kokkos.hpp":
+            continue
+        if "KOKKOS_VERSION" in line:
+            yield number, "only core/kokkos.hpp may ask for the version of Kokkos (KOKKOS_VERSION)"
+        if "Kokkos::Experimental" in line:
+            yield number, "only core/kokkos.hpp may use Kokkos::Experimental, which changes between versions"
+        if "Kokkos::Tools::Experimental" in line and folder not in ("core", "tests"):
+            yield number, "only core/ and tests/ may use Kokkos::Tools::Experimental"
+
+
+def main():
+    files = sorted(p for folder in ALLOWED for end in ("hpp", "cpp") for p in (ROOT / folder).rglob(f"*.{end}"))
+    count = 0
+    for path in files:
+        for number, what in breaches(path):
+            print(f"{path.relative_to(ROOT)}:{number}: {what}")
+            count += 1
+    return 1 if count else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

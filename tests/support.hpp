@@ -1,0 +1,143 @@
+#pragma once
+// What tests share: clouds of particles, fluids without a case file, dense matrices, and ears for Kokkos.
+
+#include <Eigen/Dense>
+#include <random>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "kernels/density.hpp"
+#include "kernels/pressure_system.hpp"
+#include "tests/catch.hpp"
+
+namespace greenwater::test {
+
+using Positions = std::vector<std::array<coord, 3>>;
+
+/// A random cloud in the unit box.
+inline Positions random_cloud(int count, int dim, unsigned seed, coord size = 1) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<coord> anywhere(0, size);
+  Positions x(count, {0, 0, 0});
+  for (auto& point : x)
+    for (int d = 0; d < dim; ++d) point[d] = anywhere(generator);
+  return x;
+}
+
+/// A lattice of cell centres in a box, each moved by up to jitter x spacing along every axis.
+inline Positions lattice(int nx, int ny, coord l0, coord x0 = 0, coord y0 = 0, coord jitter = 0, unsigned seed = 1) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<coord> shake(-jitter * l0, jitter * l0);
+  Positions x;
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i)
+      x.push_back({x0 + (i + 0.5) * l0 + shake(generator), y0 + (j + 0.5) * l0 + shake(generator), 0});
+  return x;
+}
+
+inline Particles particles_at(const Positions& at, int dim) {
+  Particles p = make_particles(dim, static_cast<int>(at.size()));
+  const auto x = Kokkos::create_mirror(p.position);
+  for (int i = 0; i < p.count; ++i)
+    for (int d = 0; d < dim; ++d) x(i, d) = at[i][d];
+  Kokkos::deep_copy(p.position, x);
+  return p;
+}
+
+inline WallFace segment(coord x0, coord y0, coord x1, coord y1, int body = 0) {
+  WallFace face;
+  face.end = {{{x0, y0, 0}, {x1, y1, 0}}};
+  face.body = body;
+  return face;
+}
+
+struct FluidOptions {
+  int dim = 2;
+  coord spacing = 0.1;
+  coord radius = 3.1;   // x spacing
+  real shift = real(0.05);
+  coord margin = 1;     // grid beyond the particles and walls [m]
+};
+
+/// A fluid of particles at the given places between the given walls, sorted, with rows and number density.
+inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const FluidOptions& options = {}) {
+  Fluid fluid;
+  fluid.spacing = options.spacing;
+  const Weight weight{static_cast<real>(options.radius * options.spacing), options.shift};
+  fluid.density = {weight, lattice_reference(weight, options.dim, options.spacing)};
+  fluid.gradient = fluid.laplacian = fluid.density;
+  std::array<coord, 3> low{0, 0, 0}, high{0, 0, 0};
+  const auto widen = [&](const std::array<coord, 3>& x) {
+    for (int d = 0; d < options.dim; ++d) {
+      low[d] = std::min(low[d], x[d]);
+      high[d] = std::max(high[d], x[d]);
+    }
+  };
+  for (const auto& x : at) widen(x);
+  for (const auto& face : walls.faces)
+    for (const auto& end : face.end) widen(end);
+  for (int d = 0; d < options.dim; ++d) {
+    low[d] -= options.margin;
+    high[d] += options.margin;
+  }
+  fluid.grid = CellGrid(make_grid(options.dim, low, high, weight.radius));
+  fluid.walls = make_mirror_walls(walls, fluid.grid.shape(), options.spacing);
+  fluid.particles = particles_at(at, options.dim);
+  fluid.grid.sort(fluid.particles);
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, weight);
+  number_density(fluid);
+  return fluid;
+}
+
+/// The first `count` values of a field, on the host.
+template <class Field>
+auto host(const Field& field) {
+  auto mirror = Kokkos::create_mirror_view(field);
+  Kokkos::deep_copy(mirror, field);
+  return mirror;
+}
+
+/// Value of each particle by its id: the order in which it was given.
+template <class Field>
+std::vector<double> by_id(const Fluid& fluid, const Field& field) {
+  const auto id = host(fluid.particles.id);
+  const auto value = host(field);
+  std::vector<double> values(fluid.particles.count);
+  for (int i = 0; i < fluid.particles.count; ++i) values[id(i)] = value(i);
+  return values;
+}
+
+/// The operator as a dense matrix, one unit vector at a time.
+inline Eigen::MatrixXd dense(const PressureSystem& system) {
+  const int n = system.count();
+  Eigen::MatrixXd matrix(n, n);
+  ScalarField p("greenwater::test_unit", n), Ap("greenwater::test_product", n);
+  for (int j = 0; j < n; ++j) {
+    const auto unit = Kokkos::create_mirror(p);
+    unit(j) = host(system.fixed())(j) ? 0 : 1;  // the operator takes p = 0 at the surface for granted
+    Kokkos::deep_copy(p, unit);
+    system.apply(p, Ap);
+    const auto column = host(Ap);
+    for (int i = 0; i < n; ++i) matrix(i, j) = column(i);
+  }
+  return matrix;
+}
+
+/// Listens to Kokkos: the labels of all launches and of all allocations while it lives. One at a time.
+class Ears {
+ public:
+  Ears();
+  ~Ears();
+  std::vector<std::string> launches, allocations;
+
+  bool launched(const std::string& part) const { return any(launches, part); }
+  bool allocated(const std::string& part) const { return any(allocations, part); }
+
+ private:
+  static bool any(const std::vector<std::string>& labels, const std::string& part) {
+    return std::any_of(labels.begin(), labels.end(), [&](const auto& l) { return l.find(part) != std::string::npos; });
+  }
+};
+
+}  // namespace greenwater::test

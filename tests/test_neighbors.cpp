@@ -1,0 +1,154 @@
+// Rows against brute force, and the order of everything against the number of threads.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+
+#include "core/check.hpp"
+#include "tests/support.hpp"
+
+using namespace greenwater;
+using namespace greenwater::test;
+
+namespace {
+
+using Row = std::map<int, double>;  // neighbour's id -> weight
+
+std::vector<Row> brute_force(const Positions& x, const Weight& w) {
+  std::vector<Row> rows(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (std::size_t j = 0; j < x.size(); ++j) {
+      const double dx = x[j][0] - x[i][0], dy = x[j][1] - x[i][1], dz = x[j][2] - x[i][2];
+      const double weight = w(std::sqrt(dx * dx + dy * dy + dz * dz));
+      if (i != j && weight > 0) rows[i][static_cast<int>(j)] = weight;
+    }
+  return rows;
+}
+
+std::vector<Row> rows_of(const Fluid& fluid) {
+  const auto id = host(fluid.particles.id);
+  const auto first = host(fluid.rows.near.first);
+  const auto index = host(fluid.rows.near.index);
+  const auto weight = host(fluid.rows.near.weight);
+  std::vector<Row> rows(fluid.particles.count);
+  for (int i = 0; i < fluid.particles.count; ++i)
+    for (auto k = first(i); k < first(i + 1); ++k) {
+      const bool once = rows[id(i)].emplace(id(index(k)), weight(k)).second;
+      REQUIRE(once);
+    }
+  return rows;
+}
+
+void same_as_brute_force(const Positions& x, int dim, coord spacing) {
+  FluidOptions options;
+  options.dim = dim;
+  options.spacing = spacing;
+  const Fluid fluid = fluid_at(x, {}, options);
+  REQUIRE(fluid.particles.count == static_cast<int>(x.size()));
+  const auto expected = brute_force(x, fluid.laplacian.weight);
+  const auto found = rows_of(fluid);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    REQUIRE(found[i].size() == expected[i].size());
+    for (const auto& [j, w] : expected[i]) {
+      REQUIRE(found[i].count(j) == 1);
+      CHECK(found[i].at(j) == Approx(w).margin(1e-12));
+    }
+  }
+}
+
+Positions in_one_cell(int count, int dim) {
+  Positions x = random_cloud(count, dim, 3);
+  for (auto& point : x)
+    for (int d = 0; d < dim; ++d) point[d] *= 1e-3;
+  return x;
+}
+
+Positions on_a_line(int count, int dim) {
+  Positions x(count, {0, 0, 0});
+  for (int i = 0; i < count; ++i) x[i][dim - 1] = 0.01 * i;
+  return x;
+}
+
+Positions with_twins(int count, int dim) {
+  Positions x = random_cloud(count, dim, 5);
+  for (int i = 0; i + 1 < count; i += 10) x[i + 1] = x[i];
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("neighbours equal brute force", "[unit][neighbors]") {
+  for (const int dim : {2, 3})
+    for (const int count : {0, 1, 2, 2000}) {
+      INFO("dimension " << dim << ", " << count << " particles");
+      same_as_brute_force(random_cloud(count, dim, 7), dim, dim == 2 ? 0.02 : 0.05);
+      same_as_brute_force(on_a_line(count, dim), dim, 0.02);
+      same_as_brute_force(with_twins(count, dim), dim, 0.03);
+    }
+  for (const int dim : {2, 3}) same_as_brute_force(in_one_cell(300, dim), dim, 0.01);
+}
+
+TEST_CASE("two thousand particles in one cell all see each other", "[unit][neighbors]") {
+  FluidOptions options;
+  options.spacing = 0.1;
+  const Fluid fluid = fluid_at(in_one_cell(2000, 2), {}, options);
+  CHECK(fluid.rows.entries() == 2000LL * 1999);
+}
+
+TEST_CASE("sorting is stable and by cell", "[unit][neighbors]") {
+  const Fluid fluid = fluid_at(random_cloud(2000, 2, 9));
+  const auto id = host(fluid.particles.id);
+  const auto first = host(fluid.grid.first());
+  for (int c = 0; c < fluid.grid.shape().count(); ++c)
+    for (int k = first(c); k + 1 < first(c + 1); ++k) CHECK(id(k) < id(k + 1));
+}
+
+TEST_CASE("sorting carries all fields along", "[unit][neighbors]") {
+  const Positions at = random_cloud(500, 3, 4);
+  Particles p = particles_at(at, 3);
+  const int extra = add_extra(p, "tracer", "-");
+  const auto u = Kokkos::create_mirror(p.velocity);
+  const auto tracer = Kokkos::create_mirror(p.extras[extra].values);
+  const auto pressure = Kokkos::create_mirror(p.pressure);
+  for (int i = 0; i < p.count; ++i) {
+    pressure(i) = i;
+    for (int d = 0; d < 3; ++d) {
+      u(i, d) = 10 * i + d;
+      tracer(i, d) = -i;
+    }
+  }
+  Kokkos::deep_copy(p.velocity, u);
+  Kokkos::deep_copy(p.extras[extra].values, tracer);
+  Kokkos::deep_copy(p.pressure, pressure);
+  CellGrid grid(make_grid(3, {0, 0, 0}, {1, 1, 1}, 0.13));
+  REQUIRE(grid.sort(p) == 0);
+  const auto id = host(p.id);
+  const auto x = host(p.position), sorted_u = host(p.velocity), sorted_tracer = host(p.extras[extra].values);
+  const auto sorted_pressure = host(p.pressure);
+  for (int i = 0; i < p.count; ++i) {
+    CHECK(sorted_pressure(i) == id(i));
+    for (int d = 0; d < 3; ++d) {
+      CHECK(x(i, d) == at[id(i)][d]);
+      CHECK(sorted_u(i, d) == 10 * id(i) + d);
+      CHECK(sorted_tracer(i, d) == -id(i));
+    }
+  }
+}
+
+TEST_CASE("particles outside the domain, or nowhere, leave", "[unit][neighbors]") {
+  Positions at = random_cloud(100, 2, 6);
+  at[7] = {1e6, 0, 0};
+  at[20] = {0.5, -1e6, 0};
+  at[50] = {std::nan(""), 0.5, 0};
+  at[99] = {INFINITY, 0.5, 0};
+  Particles p = particles_at(at, 2);
+  CellGrid grid(make_grid(2, {0, 0, 0}, {1, 1, 0}, 0.1));
+  CHECK(grid.sort(p) == 4);
+  CHECK(p.count == 96);
+  const auto id = host(p.id);
+  for (int i = 0; i < p.count; ++i) CHECK((id(i) != 7 && id(i) != 20 && id(i) != 50 && id(i) != 99));
+}
+
+TEST_CASE("a grid too large to number is refused", "[unit][neighbors]") {
+  CHECK_THROWS_AS(make_grid(3, {0, 0, 0}, {1e4, 1e4, 1e4}, 1e-3), ResourceError);
+}

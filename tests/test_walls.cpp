@@ -1,0 +1,148 @@
+// Mirror walls: what is seen, and that a lattice beside them is complete.
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.hpp"
+#include "tests/support.hpp"
+
+using namespace greenwater;
+using namespace greenwater::test;
+
+namespace {
+
+constexpr coord l0 = 0.1;
+
+WallFaces walls_of(std::vector<WallFace> faces) {
+  WallFaces walls;
+  walls.bodies = {"a", "b", "c"};
+  walls.faces = std::move(faces);
+  return walls;
+}
+
+FluidOptions options_with(coord radius, real shift) {
+  FluidOptions options;
+  options.spacing = l0;
+  options.radius = radius;
+  options.shift = shift;
+  return options;
+}
+
+// Largest |n - n^0| / n^0 of the particles whose whole neighbourhood is inside the box of fluid.
+double largest_error(const Fluid& fluid, std::function<bool(coord, coord)> complete) {
+  const auto x = host(fluid.particles.position);
+  const auto n = host(fluid.particles.number_density);
+  double error = 0;
+  int looked_at = 0;
+  for (int i = 0; i < fluid.particles.count; ++i) {
+    if (!complete(x(i, 0), x(i, 1))) continue;
+    ++looked_at;
+    error = std::max(error, std::fabs(n(i) / fluid.density.reference.n0 - 1));
+  }
+  REQUIRE(looked_at > 5);
+  return error;
+}
+
+}  // namespace
+
+TEST_CASE("n = n0 beside a flat wall", "[unit][walls]") {
+  for (const coord radius : {2.1, 3.1, 4.0})
+    for (const real shift : {0.0, 0.05}) {
+      const coord reach = radius * l0;
+      const Fluid floor = fluid_at(lattice(20, 12, l0), walls_of({segment(-2, 0, 4, 0)}), options_with(radius, shift));
+      const double error = largest_error(
+          floor, [&](coord x, coord y) { return x > reach && x < 2 - reach && y < 1.2 - reach; });
+      CHECK(error < 1e-12);
+    }
+}
+
+TEST_CASE("n = n0 in right-angled corners", "[unit][walls]") {
+  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 3), segment(2, 3, 2, 0)});
+  for (const coord radius : {2.1, 3.1, 4.0}) {
+    const Fluid tank = fluid_at(lattice(20, 12, l0), walls, options_with(radius, real(0.05)));
+    CHECK(largest_error(tank, [&](coord, coord y) { return y < 1.2 - radius * l0; }) < 1e-12);
+  }
+}
+
+TEST_CASE("n = n0 in a closed box", "[unit][walls]") {
+  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 1.2), segment(2, 1.2, 2, 0), segment(2, 1.2, 0, 1.2)});
+  const Fluid tank = fluid_at(lattice(20, 12, l0), walls, options_with(3.1, real(0.05)));
+  CHECK(largest_error(tank, [](coord, coord) { return true; }) < 1e-12);
+}
+
+TEST_CASE("n = n0 on both sides of a plate without thickness that stands on the floor", "[unit][walls]") {
+  // The plate splits the water from wall to wall; its foot stands on the floor, which goes on under it.
+  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 3), segment(2, 3, 2, 0), segment(1, 0, 1, 3, 1)});
+  const Fluid tank = fluid_at(lattice(20, 12, l0), walls, options_with(3.1, real(0.05)));
+  CHECK(largest_error(tank, [&](coord, coord y) { return y < 1.2 - 3.1 * l0; }) < 1e-12);
+}
+
+TEST_CASE("n = n0 round a thick plate, but for its corners", "[unit][walls]") {
+  const auto walls = walls_of({segment(-1, 0, 3, 0), segment(0.8, 0, 0.8, 3, 1), segment(1, 0, 1, 3, 1)});
+  Positions left = lattice(8, 12, l0);
+  const Positions right = lattice(10, 12, l0, 1.0);
+  left.insert(left.end(), right.begin(), right.end());
+  const Fluid tank = fluid_at(left, walls, options_with(3.1, real(0.05)));
+  const double error = largest_error(tank, [&](coord x, coord y) {
+    return y < 1.2 - 3.1 * l0 && x > 3.1 * l0 && x < 2 - 3.1 * l0;
+  });
+  CHECK(error < 1e-12);
+}
+
+TEST_CASE("nothing is seen through a plate, and round its free end it is", "[unit][walls]") {
+  const auto plate = walls_of({segment(1, 0, 1, 1)});
+  const Positions low{{0.95, 0.5, 0}, {1.05, 0.5, 0}}, high{{0.95, 1.05, 0}, {1.05, 1.05, 0}};
+  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.entries() == 0);
+  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.image_entries() == 2);  // each its own image
+  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.entries() == 2);
+  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.image_entries() == 0);
+}
+
+TEST_CASE("an image by way of the floor is not seen through a plate that stands on it", "[unit][walls]") {
+  // Mirror twins beside the foot: the way by the floor meets the plate exactly at its foot.
+  const auto walls = walls_of({segment(0, 0, 2, 0), segment(1, 0, 1, 1)});
+  const Fluid fluid = fluid_at({{0.95, 0.05, 0}, {1.05, 0.05, 0}}, walls, options_with(3.1, 0));
+  CHECK(fluid.rows.entries() == 0);
+  CHECK(fluid.rows.image_entries() == 2 * 3);  // each its own image in floor, plate and corner
+}
+
+TEST_CASE("sight is mutual to the last bit", "[unit][walls]") {
+  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 2), segment(2, 2, 2, 0), segment(0.9, 0, 0.9, 0.7, 1),
+                               segment(0.9, 0.7, 1.13, 0.7, 1), segment(1.13, 0, 1.13, 0.7, 1), segment(0.5, 1, 0.8, 1.4, 2)});
+  Positions x = random_cloud(1500, 2, 12, 2);
+  x.erase(std::remove_if(x.begin(), x.end(),
+                         [](const auto& p) { return p[0] > 0.9 && p[0] < 1.13 && p[1] < 0.7; }),
+          x.end());
+  const Fluid fluid = fluid_at(x, walls, options_with(3.1, real(0.05)));
+  const auto first = host(fluid.rows.images.first);
+  const auto index = host(fluid.rows.images.index), mirror = host(fluid.rows.images.mirror);
+  const auto weight = host(fluid.rows.images.weight);
+  std::map<std::array<int, 3>, double> seen;
+  for (int i = 0; i < fluid.particles.count; ++i)
+    for (auto k = first(i); k < first(i + 1); ++k) seen[{i, index(k), mirror(k)}] = weight(k);
+  REQUIRE(seen.size() > 1000);
+  for (const auto& [who, w] : seen) {
+    const auto back = seen.find({who[1], who[0], who[2]});
+    REQUIRE(back != seen.end());
+    CHECK(back->second == w);
+  }
+}
+
+TEST_CASE("walls on one line that touch are one", "[unit][walls]") {
+  WallFaces walls = walls_of({segment(0, 0, 1, 0), segment(0, 0, 0, 1), segment(3, 0, 2, 0, 1), segment(1, 0, 2, 0)});
+  merge_collinear(walls, 1e-9);
+  REQUIRE(walls.faces.size() == 2);
+  CHECK(std::min(walls.faces[0].end[0][0], walls.faces[0].end[1][0]) == Approx(0).margin(1e-15));
+  CHECK(std::max(walls.faces[0].end[0][0], walls.faces[0].end[1][0]) == Approx(3));
+}
+
+TEST_CASE("walls that meet at another angle are refused in words", "[unit][walls]") {
+  const auto walls = walls_of({segment(0, 0, 1, 0), segment(0, 0, -1, 1, 1)});
+  CHECK_THROWS_WITH(make_mirror_walls(walls, make_grid(2, {-1, -1, 0}, {1, 1, 0}, 0.3), 0.1),
+                    Catch::Contains("'a' and 'b' meet at 45 degrees"));
+}
+
+TEST_CASE("a scene without walls holds no memory for them", "[unit][walls]") {
+  const Fluid fluid = fluid_at(random_cloud(50, 2, 1));
+  CHECK(fluid.walls.mirror.extent(0) == 0);
+  CHECK(fluid.rows.images.first.extent(0) == 0);
+}
