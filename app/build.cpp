@@ -5,6 +5,7 @@
 
 #include "app/formula.hpp"
 #include "core/check.hpp"
+#include "kernels/density.hpp"
 
 namespace greenwater {
 namespace {
@@ -148,7 +149,43 @@ GridShape build_grid(const Scene& scene, const WallFaces& walls) {
   return make_grid(scene.dimension, from, to, radius);
 }
 
+// How far a point is off a face, and where the face's normal points; the face is taken as it is long.
+struct Off {
+  double distance;
+  Point normal;
+};
+
+Off off_face(const WallFace& face, const Point& x) {
+  const double tx = face.end[1][0] - face.end[0][0], ty = face.end[1][1] - face.end[0][1];
+  const double length = std::hypot(tx, ty);
+  const double dx = x[0] - face.end[0][0], dy = x[1] - face.end[0][1];
+  const double s = std::clamp((dx * tx + dy * ty) / (length * length), 0.0, 1.0);
+  return {std::hypot(dx - s * tx, dy - s * ty), {-ty / length, tx / length, 0}};
+}
+
+Point way_in(const Scene& scene, const WallFaces& walls, const WallFace& face, const ProbeCase& probe) {
+  if (probe.facing != Point{0, 0, 0}) return probe.facing;
+  for (const BoxCase& box : scene.boxes)
+    if (box.name == walls.bodies[face.body])
+      return {(box.min[0] + box.max[0]) / 2 - probe.point[0], (box.min[1] + box.max[1]) / 2 - probe.point[1], 0};
+  refuse(probe.place, "the point of probe \"", probe.name, "\" is on the wall \"", walls.bodies[face.body],
+         "\", which may be wet on both sides; say which with facing, e.g. facing = [-1, 0]");
+}
+
 }  // namespace
+
+Point pressure_point(const Scene& scene, const WallFaces& walls, const ProbeCase& probe) {
+  const double l0 = scene.mps.spacing;
+  Point at = probe.point;
+  for (const WallFace& face : walls.faces) {
+    const Off off = off_face(face, probe.point);
+    if (off.distance > 1e-3 * l0) continue;
+    const Point in = way_in(scene, walls, face, probe);
+    const double along = in[0] * off.normal[0] + in[1] * off.normal[1];
+    for (int d = 0; d < 2; ++d) at[d] += (along < 0 ? -1 : 1) * 0.01 * l0 * off.normal[d];
+  }
+  return at;
+}
 
 Extent scene_extent(const Scene& scene, const WallFaces& walls) {
   Extent extent{scene.fluid.min, scene.fluid.max};
@@ -182,6 +219,8 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
   fluid.walls = make_mirror_walls(walls, fluid.grid.shape(), fluid.spacing);
   fluid.particles = build_particles(scene);
   settle_rows(fluid);
+  number_density(fluid);
+  mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
   return fluid;
 }
 
@@ -189,7 +228,7 @@ Effects build_effects(const Scene& scene) {
   Effects effects;
   for (const ViscosityCase& c : scene.viscosity) effects.add(make_viscosity(static_cast<real>(c.kinematic)));
   for (const CollisionCase& c : scene.collision)
-    effects.add(make_collision({static_cast<real>(c.distance), static_cast<real>(c.restitution)}));
+    effects.add(make_collision({static_cast<real>(c.distance), static_cast<real>(c.restitution), c.sweeps}));
   for (const BodyForceCase& c : scene.body_force) {
     const auto force = std::make_shared<std::array<Formula, 3>>(compile(c.acceleration.text, c.acceleration.place));
     effects.add(make_body_force([force](double x, double y, double z, double t, double* out) {

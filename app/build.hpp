@@ -18,6 +18,10 @@ Effects build_effects(const Scene& scene);
 
 std::unique_ptr<Scheme> build_scheme(const Scene& scene);
 
+/// Where the pressure probe reads: its point, or, of a point on a wall, the place just off that wall on the side that the
+/// probe faces; a box faces its inside by itself. Throws CaseError on any other wall when the case does not say.
+Point pressure_point(const Scene& scene, const WallFaces& walls, const ProbeCase& probe);
+
 /// Lowest and highest corner of walls and fluid [m].
 struct Extent {
   Point low, high;

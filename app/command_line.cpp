@@ -1,9 +1,8 @@
 #include "app/command_line.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
-
-#include <CLI/CLI.hpp>
 
 #include "core/build_facts.hpp"
 #include "io/suggest.hpp"
@@ -37,7 +36,9 @@ void add_run(CLI::App& app, Typed& typed) {
   verb->add_option("-o,--output", typed.output, "The run folder; it must not exist (default: from the case)")
       ->type_name("DIR");
   verb->add_flag("--overwrite", run.overwrite, "Remove the run that is in the folder of -o first");
-  verb->add_option("--max-steps", run.max_steps, "Stop after N steps")->type_name("N")->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}));
+  verb->add_option("--max-steps", run.max_steps, "Stop after N steps")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000'000}));
   verb->add_flag("-n,--dry-run", run.dry_run, "Read, check and print the plan; write nothing (as check)");
   verb->add_option("-j,--threads", run.threads, "Threads (default: OMP_NUM_THREADS, or all cores)")
       ->type_name("N")
@@ -78,7 +79,7 @@ void require_known_verb(int argc, const char* const* argv) {
   const std::string near = nearest(verb, verbs);
   const bool is_case = verb.ends_with(".toml");
   throw CaseError(text_of("greenwater: error: unknown command \"", verb, "\"; ",
-                          is_case       ? "did you mean: greenwater run " + verb
+                          is_case        ? "did you mean: greenwater run " + verb
                           : near.empty() ? "known: " + listed(verbs)
                                          : "did you mean \"" + near + "\"?"));
 }

@@ -14,13 +14,13 @@ namespace greenwater {
 /// What `run` and `check` were asked to do.
 struct RunOptions {
   std::string case_path;
-  std::optional<std::string> output;     ///< -o: the run folder; else from the case
+  std::optional<std::string> output;  ///< -o: the run folder; else from the case
   bool overwrite = false;
   std::vector<CaseOption> case_options;  ///< --set, --until
   std::int64_t max_steps = 0;            ///< 0: no limit
   bool dry_run = false;
-  int threads = 0;                       ///< 0: left to Kokkos and OMP_NUM_THREADS
-  bool no_fields = false;                ///< no frames
+  int threads = 0;         ///< 0: left to Kokkos and OMP_NUM_THREADS
+  bool no_fields = false;  ///< no frames
   Verbosity verbosity = Verbosity::normal;
   bool color = true;
   std::vector<std::string> command_line;  ///< all of it, for the record

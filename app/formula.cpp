@@ -1,9 +1,9 @@
 #include "app/formula.hpp"
 
+#include <muParser.h>
+
 #include <cctype>
 #include <numbers>
-
-#include <muParser.h>
 
 namespace greenwater {
 namespace {
@@ -46,14 +46,16 @@ struct Formula::Engine {
 
 Formula::Formula(const std::string& text, const Place& place) {
   const std::size_t assignment = find_assignment(text);
-  if (assignment != std::string::npos) refuse_formula(place, text, assignment, "\"=\" has no meaning here (equality is ==)");
+  if (assignment != std::string::npos)
+    refuse_formula(place, text, assignment, "\"=\" has no meaning here (equality is ==)");
   try {
     engine_ = std::make_unique<Engine>(text);
     engine_->parser.Eval();
   } catch (const mu::Parser::exception_type& fault) {
     const auto position = fault.GetPos();
     std::string why = fault.GetMsg();
-    while (!why.empty() && (why.back() == '.' || std::isspace(static_cast<unsigned char>(why.back())) != 0)) why.pop_back();
+    while (!why.empty() && (why.back() == '.' || std::isspace(static_cast<unsigned char>(why.back())) != 0))
+      why.pop_back();
     refuse_formula(place, text, position < 0 ? text.size() : static_cast<std::size_t>(position), why);
   }
   if (engine_->parser.GetNumResults() != 1) refuse_formula(place, text, 0, "one value is wanted, not a list");

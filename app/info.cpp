@@ -1,11 +1,11 @@
 #include "app/info.hpp"
 
+#include <fmt/format.h>
+
 #include <limits>
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <fmt/format.h>
 
 #include "app/machine.hpp"
 #include "core/build_facts.hpp"

@@ -1,11 +1,11 @@
 #include "app/plan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
-
-#include <fmt/format.h>
 
 namespace greenwater {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 // row ends (50), host copies for a frame (100); rounded up.
 constexpr double bytes_per_particle = 400;
 constexpr double bytes_per_neighbor = 4, bytes_per_weight = 8;
-constexpr double row_growth = 1.5;  // rows grow ahead of need
+constexpr double row_growth = 1.5;                           // rows grow ahead of need
 constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
 
 double largest_radius(const MpsCase& mps) {
@@ -23,8 +23,8 @@ double largest_radius(const MpsCase& mps) {
 
 double memory_of(const Scene& scene, double particles) {
   const double radius = largest_radius(scene.mps);
-  const double neighbors = scene.dimension == 2 ? std::numbers::pi * radius * radius
-                                                : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
+  const double neighbors =
+      scene.dimension == 2 ? std::numbers::pi * radius * radius : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   const double entry = bytes_per_neighbor + (scene.mps.pressure.weights == "kept" ? bytes_per_weight : 0);
   return particles * (bytes_per_particle + row_growth * neighbors * entry);
 }
@@ -43,10 +43,10 @@ double rounded_down(double value) {
 
 void warn_of_speed(const Scene& scene, Plan& plan) {
   if (plan.cfl <= scene.mps.cfl_warn) return;
-  plan.warnings.push_back(fmt::format(
-      "cfl may reach {:.2f} at the front of a collapse (2 sqrt(g H) dt / spacing), cfl_warn is {:.2g} "
-      "-> mps.time_step = {:.2g} keeps it",
-      plan.cfl, scene.mps.cfl_warn, rounded_down(scene.mps.time_step * scene.mps.cfl_warn / plan.cfl)));
+  plan.warnings.push_back(
+      fmt::format("cfl may reach {:.2f} at the front of a collapse (2 sqrt(g H) dt / spacing), cfl_warn is {:.2g} "
+                  "-> mps.time_step = {:.2g} keeps it",
+                  plan.cfl, scene.mps.cfl_warn, rounded_down(scene.mps.time_step * scene.mps.cfl_warn / plan.cfl)));
 }
 
 void warn_of_output(const Scene& scene, Plan& plan) {
@@ -94,9 +94,9 @@ void require_memory(const Plan& plan, double memory, const Scene& scene) {
   const std::string cure = fmt::format("; take a larger mps.spacing than {:.6g} m", scene.mps.spacing);
   const Place& place = scene.mps.spacing_place;
   if (!(plan.memory <= memory)) {
-    throw ResourceError(complaint(
-        place, fmt::format("{:.0f} particles need about {:.3g} GB of memory, this machine has {:.3g} GB{}",
-                           plan.particles, plan.memory / 1e9, memory / 1e9, cure)));
+    throw ResourceError(
+        complaint(place, fmt::format("{:.0f} particles need about {:.3g} GB of memory, this machine has {:.3g} GB{}",
+                                     plan.particles, plan.memory / 1e9, memory / 1e9, cure)));
   }
   if (plan.particles > most_particles) {
     throw ResourceError(complaint(place, fmt::format("{:.0f} particles are more than the program can number ({:.0f}){}",

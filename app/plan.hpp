@@ -10,9 +10,9 @@ namespace greenwater {
 
 struct Plan {
   double particles = 0, steps = 0, frames = 0;  // as double: a wrong spacing must not overflow them
-  double memory = 0;  // [bytes], estimated
-  double disk = 0;    // [bytes], estimated
-  double cfl = 0;     // of the front of a collapse, 2 sqrt(g H) dt / spacing [-]
+  double memory = 0;                            // [bytes], estimated
+  double disk = 0;                              // [bytes], estimated
+  double cfl = 0;                               // of the front of a collapse, 2 sqrt(g H) dt / spacing [-]
   std::vector<std::string> warnings;
 };
 

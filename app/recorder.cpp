@@ -61,8 +61,8 @@ void Recorder::open_probes(Simulation& simulation) {
   for (std::size_t i = 0; i < scene_.probes.size(); ++i) {
     const ProbeCase& probe = scene_.probes[i];
     const std::string head = quantity_name(probe.kind) + '[' + simulation.probe_unit(i) + ']';
-    probes_.push_back({Csv(folder_.path() / "probes" / (probe.name + ".csv"), {"time[s]", head}),
-                       Schedule(probe.every_time), i});
+    probes_.push_back(
+        {Csv(folder_.path() / "probes" / (probe.name + ".csv"), {"time[s]", head}), Schedule(probe.every_time), i});
   }
 }
 

@@ -1,12 +1,12 @@
 #include "app/run.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
 #include <new>
-
-#include <fmt/format.h>
 
 #include "app/failure.hpp"
 #include "app/plan.hpp"
@@ -26,7 +26,12 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 RunOrigin origin_of(const RunOptions& options, const Scene& scene, const CaseFile& file) {
-  return {scene.name, file.name(), file.options(), options.command_line, Runtime::space_name(), Runtime::concurrency(),
+  return {scene.name,
+          file.name(),
+          file.options(),
+          options.command_line,
+          Runtime::space_name(),
+          Runtime::concurrency(),
           std::chrono::system_clock::now()};
 }
 

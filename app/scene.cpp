@@ -45,8 +45,9 @@ void check_times(const Scene& scene) {
   constexpr double most_steps = 1e12;
   require_at(scene.mps.time_step_place, scene.mps.time_step <= scene.end, "mps.time_step = ", scene.mps.time_step,
              " s is longer than the run, time.end = ", scene.end, " s");
-  require_at(scene.mps.time_step_place, scene.end / scene.mps.time_step < most_steps, "mps.time_step = ",
-             scene.mps.time_step, " s makes more than 1e12 steps of time.end = ", scene.end, " s; take a longer step");
+  require_at(scene.mps.time_step_place, scene.end / scene.mps.time_step < most_steps,
+             "mps.time_step = ", scene.mps.time_step, " s makes more than 1e12 steps of time.end = ", scene.end,
+             " s; take a longer step");
 }
 
 }  // namespace

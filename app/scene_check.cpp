@@ -53,7 +53,9 @@ bool plate_fits(const Check& check, const PlateCase& plate, const BoxCase& box) 
   if (!check.inside(plate.base, box.min, box.max)) return false;
   const Point tip{plate.base[0] + plate.height * std::sin(plate.angle),
                   plate.base[1] + plate.height * std::cos(plate.angle), 0};
-  const auto open = [&](const char* side) { return std::find(box.open.begin(), box.open.end(), side) != box.open.end(); };
+  const auto open = [&](const char* side) {
+    return std::find(box.open.begin(), box.open.end(), side) != box.open.end();
+  };
   const double slack = check.slack;
   return (tip[0] >= box.min[0] - slack || open("left")) && (tip[0] <= box.max[0] + slack || open("right")) &&
          (tip[1] >= box.min[1] - slack || open("bottom")) && (tip[1] <= box.max[1] + slack || open("top"));
@@ -66,9 +68,10 @@ void check_plates(const Check& check) {
     const bool held = std::any_of(scene.boxes.begin(), scene.boxes.end(),
                                   [&](const BoxCase& box) { return plate_fits(check, plate, box); });
     const BoxCase& first = scene.boxes.front();
-    require_at(plate.place, held, "the plate \"", plate.name, "\" from its base ", toml_point(plate.base, scene.dimension),
-               " m, ", plate.height, " m high, is not inside the box \"", first.name, "\" from ",
-               toml_point(first.min, scene.dimension), " to ", toml_point(first.max, scene.dimension), " m");
+    require_at(plate.place, held, "the plate \"", plate.name, "\" from its base ",
+               toml_point(plate.base, scene.dimension), " m, ", plate.height, " m high, is not inside the box \"",
+               first.name, "\" from ", toml_point(first.min, scene.dimension), " to ",
+               toml_point(first.max, scene.dimension), " m");
   }
 }
 
@@ -77,8 +80,8 @@ void check_domain(const Check& check) {
   if (!scene.has_domain) return;
   const bool held = check.inside(scene.fluid.min, scene.domain_min, scene.domain_max) &&
                     check.inside(scene.fluid.max, scene.domain_min, scene.domain_max);
-  require_at(scene.domain_place, held, "the fluid reaches out of [domain]: particles there would be taken out at once; ",
-             "enlarge the domain");
+  require_at(scene.domain_place, held,
+             "the fluid reaches out of [domain]: particles there would be taken out at once; ", "enlarge the domain");
 }
 
 }  // namespace

@@ -71,7 +71,8 @@ void read_geometry(Section root, Scene& scene) {
 
 void read_fluid(Section root, Scene& scene) {
   std::vector<Section> fluids = root.list("fluid");
-  require_at(root.place(), !fluids.empty(), "missing table [[fluid]]; add for example:\n    [[fluid]]\n"
+  require_at(root.place(), !fluids.empty(),
+             "missing table [[fluid]]; add for example:\n    [[fluid]]\n"
              "    region = { type = \"box\", min = [0.0, 0.0], max = [0.2, 0.4] }");
   if (fluids.size() > 1) refuse(fluids[1].place(), "this version runs one [[fluid]], found ", fluids.size());
   Section& section = fluids.front();

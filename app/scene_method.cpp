@@ -47,9 +47,9 @@ void read_mps(Section mps, MpsCase& options) {
   options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
   options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);
-  for (auto [key, radius] : {std::pair{"radius_density", &options.radius_density},
-                             std::pair{"radius_gradient", &options.radius_gradient},
-                             std::pair{"radius_laplacian", &options.radius_laplacian}}) {
+  for (auto [key, radius] :
+       {std::pair{"radius_density", &options.radius_density}, std::pair{"radius_gradient", &options.radius_gradient},
+        std::pair{"radius_laplacian", &options.radius_laplacian}}) {
     *radius = mps.number(key, "x spacing", between(least_radius, most_radius), *radius);
   }
   options.multiplication_coefficient =
@@ -70,6 +70,7 @@ void read_effects(Section effects, Scene& scene) {
     const double distance = section->number("distance", "x spacing", between(0, 1), collision.distance);
     collision.distance = not_zero(*section, "distance", distance);
     collision.restitution = section->number("restitution", "-", between(0, 1), collision.restitution);
+    collision.sweeps = small_count(*section, "sweeps", 1, collision.sweeps);
     scene.collision.push_back(collision);
   }
   if (auto section = effects.table_if_present("body_force")) {

@@ -6,12 +6,12 @@
 
 namespace greenwater {
 
-void read_geometry(Section root, Scene& scene);                    // [geometry.NAME]
-void read_fluid(Section root, Scene& scene);                       // [[fluid]]
-void read_mps(Section mps, MpsCase& options);                      // [mps], [mps.pressure]
-void read_effects(Section effects, Scene& scene);                  // [effects.NAME]
-void read_output(Section output, OutputCase& options);             // [output]
-void read_probes(Section root, Scene& scene);                      // [[probe]]
+void read_geometry(Section root, Scene& scene);         // [geometry.NAME]
+void read_fluid(Section root, Scene& scene);            // [[fluid]]
+void read_mps(Section mps, MpsCase& options);           // [mps], [mps.pressure]
+void read_effects(Section effects, Scene& scene);       // [effects.NAME]
+void read_output(Section output, OutputCase& options);  // [output]
+void read_probes(Section root, Scene& scene);           // [[probe]]
 
 /// Sizes against the spacing, fluid in the tank, plates in the tank, all inside the domain. Throws CaseError.
 void check_scene(const Scene& scene);

@@ -47,9 +47,9 @@ void read_probes(Section root, Scene& scene) {
       require_at(section.place("name"), other.name != probe.name, "two probes have the name \"", probe.name,
                  "\"; each writes its own file, so rename one");
     }
-    probe.kind = section.choice(
-        "kind", {"wave_front", "surface_height", "wall_pressure", "wall_force", "particle_count"},
-        example<std::string>("wave_front"));
+    probe.kind =
+        section.choice("kind", {"wave_front", "surface_height", "wall_pressure", "wall_force", "particle_count"},
+                       example<std::string>("wave_front"));
     probe.every_time = section.number("every_time", "s", at_least(0), 0.0);
     read_kind(section, scene, probe);
     scene.probes.push_back(probe);

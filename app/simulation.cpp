@@ -46,6 +46,8 @@ Simulation::Simulation(const Scene& scene)
       fluid_(build_fluid(scene, walls_)),
       effects_(build_effects(scene)),
       scheme_(build_scheme(scene)) {
+  for (const ProbeCase& probe : scene_.probes)
+    pressure_points_.push_back(probe.kind == "wall_pressure" ? pressure_point(scene_, walls_, probe) : probe.point);
   // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
   const Extent extent = scene_extent(scene_, walls_);
   for (int d = 0; d < 3; ++d) potential_zero_[d] = scene_.gravity[d] > 0 ? extent.high[d] : extent.low[d];
@@ -111,7 +113,7 @@ double Simulation::sample(std::size_t index) {
   const ProbeCase& probe = scene_.probes[index];
   if (probe.kind == "wave_front") return or_nothing(wave_front(fluid_));
   if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x));
-  if (probe.kind == "wall_pressure") return sampler_.pressure(fluid_, {probe.point}).front();
+  if (probe.kind == "wall_pressure") return sampler_.pressure(fluid_, {pressure_points_[index]}).front();
   if (probe.kind == "wall_force") {
     const auto patches = wall_patches(walls_, body_of(walls_, probe.wall), fluid_.spacing);
     return wall_force(sampler_, fluid_, patches)[probe.component == "y" ? 1 : 0];

@@ -48,6 +48,7 @@ class Simulation {
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;
   PointSampler sampler_;
+  std::vector<Point> pressure_points_;  // of each probe; only those of pressure probes mean anything
   Point potential_zero_{};
   double first_energy_ = 0;
   std::int64_t steps_ = 0, retired_ = 0;

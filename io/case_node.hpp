@@ -17,9 +17,9 @@ struct CaseNode {
 
   Kind kind = Kind::table;
   Origin origin = Origin::file;
-  std::string key;   ///< own name; empty in a list and at the root
-  Place key_place;   ///< of the key
-  Place place;       ///< of the value
+  std::string key;  ///< own name; empty in a list and at the root
+  Place key_place;  ///< of the key
+  Place place;      ///< of the value
   std::string text;
   std::int64_t whole = 0;
   double real = 0;

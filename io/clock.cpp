@@ -1,9 +1,9 @@
 #include "io/clock.hpp"
 
+#include <fmt/chrono.h>
+
 #include <algorithm>
 #include <cmath>
-
-#include <fmt/chrono.h>
 
 namespace greenwater {
 namespace {

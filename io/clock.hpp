@@ -27,7 +27,7 @@ class Eta {
   double left(double steps_left) const { return steps_left * seconds_per_step(); }
 
  private:
-  double keep_;         // weight of the past in each update
+  double keep_;  // weight of the past in each update
   double mean_ = 0, weight_ = 0;
 };
 

@@ -1,12 +1,11 @@
 #include "io/log.hpp"
 
+#include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-
-#include <fmt/format.h>
 
 #include "io/clock.hpp"
 #include "io/thermo.hpp"
@@ -89,7 +88,8 @@ void Log::warn(const Notice& notice, std::int64_t step) {
 std::vector<std::string> Log::warning_counts() const {
   std::vector<std::string> lines;
   for (const Counted& known : counted_) {
-    lines.push_back(fmt::format("warning   {}: {} time(s), first at step {}", known.kind, known.count, known.first_step));
+    lines.push_back(
+        fmt::format("warning   {}: {} time(s), first at step {}", known.kind, known.count, known.first_step));
   }
   return lines;
 }

@@ -23,10 +23,10 @@ struct LogOptions {
 /// How far a run is.
 struct Progress {
   std::int64_t step = 0;
-  double time = 0, end = 0;    ///< [s]
-  double fraction = 0;         ///< 0 to 1
+  double time = 0, end = 0;  ///< [s]
+  double fraction = 0;       ///< 0 to 1
   double ms_per_step = 0;
-  double eta = 0;              ///< wall time left [s]
+  double eta = 0;  ///< wall time left [s]
 };
 
 class Log {
@@ -62,8 +62,8 @@ class Log {
   void clear_live_line();
 
   LogOptions options_;
-  bool live_;                         // stdout is a terminal
-  bool live_line_ = false;            // a live line stands there unfinished
+  bool live_;               // stdout is a terminal
+  bool live_line_ = false;  // a live line stands there unfinished
   std::optional<TextFile> file_;
   std::string before_open_;
   int rows_ = 0;

@@ -1,8 +1,8 @@
 #include "io/paraview.hpp"
 
-#include <numeric>
-
 #include <fmt/format.h>
+
+#include <numeric>
 
 #include "core/check.hpp"
 #include "io/file.hpp"

@@ -12,9 +12,9 @@ namespace greenwater {
 
 /// A position in a case file, or a command-line option that stands for one.
 struct Place {
-  std::string file;           ///< name of the file, or the option as typed
-  int line = 0, column = 0;   ///< from 1; 0: the file as a whole
-  int length = 1;             ///< characters to underline
+  std::string file;                                       ///< name of the file, or the option as typed
+  int line = 0, column = 0;                               ///< from 1; 0: the file as a whole
+  int length = 1;                                         ///< characters to underline
   std::shared_ptr<const std::vector<std::string>> lines;  ///< the text it points into; may be empty
 };
 

@@ -168,7 +168,8 @@ double parse_quantity(const std::string& text, const std::string& unit) {
   std::string_view rest = trimmed(text);
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t length = number_length(rest);
-  require(length > 0, '"', text, "\" is not a number with a unit; write for example \"1.5 ", unit, "\" or the plain number");
+  require(length > 0, '"', text, "\" is not a number with a unit; write for example \"1.5 ", unit,
+          "\" or the plain number");
   const std::string_view written = trimmed(rest.substr(length));
   const auto wanted = parse_unit(unit);
   expect(wanted.has_value());

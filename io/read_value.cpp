@@ -49,8 +49,8 @@ const std::vector<CaseNode>& items_of(const CaseNode& node, const std::string& k
 }
 
 double read_number(const CaseNode& node, const std::string& key, const std::string& unit, const Bounds& range) {
-  require_at(node.place, node.is_number() || node.kind == CaseNode::Kind::text, key, " must be a number",
-             in_unit(unit), ", not ", kind_name(node.kind));
+  require_at(node.place, node.is_number() || node.kind == CaseNode::Kind::text, key, " must be a number", in_unit(unit),
+             ", not ", kind_name(node.kind));
   const double value = node.kind == CaseNode::Kind::text    ? quantity(node, key, unit)
                        : node.kind == CaseNode::Kind::whole ? static_cast<double>(node.whole)
                                                             : node.real;
@@ -60,8 +60,8 @@ double read_number(const CaseNode& node, const std::string& key, const std::stri
 
 std::int64_t read_count(const CaseNode& node, const std::string& key, std::int64_t low) {
   constexpr double most = 9e15;  // beyond this a double is no longer exact
-  const bool whole = node.kind == CaseNode::Kind::whole ||
-                     (node.kind == CaseNode::Kind::real && std::floor(node.real) == node.real);
+  const bool whole =
+      node.kind == CaseNode::Kind::whole || (node.kind == CaseNode::Kind::real && std::floor(node.real) == node.real);
   require_at(node.place, whole, key, " must be a whole number, not ",
              node.kind == CaseNode::Kind::real ? toml_number(node.real) : std::string(kind_name(node.kind)));
   if (node.kind == CaseNode::Kind::real) require_in({-most, most, true}, node.real, node, key, "-");
@@ -86,8 +86,8 @@ std::string read_choice(const CaseNode& node, const std::string& key, const Word
     if (word == known) return word;
   }
   const std::string near = nearest(word, allowed);
-  refuse(node.place, key, " cannot be \"", word, "\"; ",
-         near.empty() ? "" : "did you mean \"" + near + "\"? ", "known: ", listed(allowed));
+  refuse(node.place, key, " cannot be \"", word, "\"; ", near.empty() ? "" : "did you mean \"" + near + "\"? ",
+         "known: ", listed(allowed));
 }
 
 Point read_point(const CaseNode& node, const std::string& key, const std::string& unit, int dimension) {

@@ -52,7 +52,8 @@ std::string what_may_be_meant(const std::string& key, const ResolvedTable& table
 void collect(const ResolvedTable& table, std::vector<std::string>& complaints) {
   if (table.node && table.node->kind == CaseNode::Kind::table) {
     for (const CaseNode& child : table.node->children) {
-      if (!table.was_asked(child.key)) complaints.push_back(unknown_key(child, table, what_may_be_meant(child.key, table)));
+      if (!table.was_asked(child.key))
+        complaints.push_back(unknown_key(child, table, what_may_be_meant(child.key, table)));
     }
   }
   for (const auto& inner : table.tables) collect(*inner, complaints);
@@ -99,8 +100,8 @@ std::string resolved_text(const ResolvedTable& root, const std::string& file_nam
 
 std::string unknown_key(const CaseNode& node, const ResolvedTable& table, const std::string& meant) {
   const bool is_table = node.kind == CaseNode::Kind::table && table.kind == ResolvedTable::Kind::root;
-  const std::string what = is_table ? "unknown table [" + toml_key(node.key) + "]"
-                                    : "unknown key \"" + node.key + "\" in " + table.header();
+  const std::string what =
+      is_table ? "unknown table [" + toml_key(node.key) + "]" : "unknown key \"" + node.key + "\" in " + table.header();
   return complaint(node.key_place, what + "; " + meant);
 }
 

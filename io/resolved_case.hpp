@@ -18,11 +18,11 @@ struct ResolvedValue {
 struct ResolvedTable {
   enum class Kind { root, table, list_item };
 
-  std::string name;                 ///< own key
+  std::string name;  ///< own key
   Kind kind = Kind::root;
   ResolvedTable* parent = nullptr;
-  const CaseNode* node = nullptr;   ///< nullptr: not in the case, all presets
-  std::vector<std::string> asked;   ///< keys that somebody wanted to know, here or not
+  const CaseNode* node = nullptr;  ///< nullptr: not in the case, all presets
+  std::vector<std::string> asked;  ///< keys that somebody wanted to know, here or not
   std::vector<ResolvedValue> values;
   std::vector<std::unique_ptr<ResolvedTable>> tables;
 

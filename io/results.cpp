@@ -32,8 +32,8 @@ Hdf5Handle one_value(const fs::path& path) {
 void write_attribute(const Place5& place, const std::string& name, hid_t type, const void* value) {
   const std::string what = "attribute " + name + " cannot be written";
   const Hdf5Handle space = one_value(place.path);
-  const Hdf5Handle attribute = hdf5_made(
-      H5Acreate2(place.id, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose, place.path, what);
+  const Hdf5Handle attribute = hdf5_made(H5Acreate2(place.id, name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT),
+                                         H5Aclose, place.path, what);
   hdf5_done(H5Awrite(attribute.id(), type, value), place.path, what);
 }
 

@@ -30,8 +30,8 @@ bool make_new(const fs::path& path) {
   if (path.has_parent_path()) make_folder(path.parent_path());
   std::error_code fault;
   const bool made = fs::create_directory(path, fault);
-  require<FileError>(!fault || something_is_at(path), path.string(), ": error: cannot create the run folder: ",
-                     fault.message());
+  require<FileError>(!fault || something_is_at(path), path.string(),
+                     ": error: cannot create the run folder: ", fault.message());
   return made;
 }
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cctype>
 #include <fstream>
-
 #include <nlohmann/json.hpp>
 
 #include "core/build_facts.hpp"
@@ -32,8 +31,10 @@ Json environment() {
 
 Json build() {
   const BuildFacts& facts = build_facts();
-  return {{"version", std::string(facts.version)},       {"git", std::string(facts.git)},
-          {"compiler", std::string(facts.compiler)},     {"build_type", std::string(facts.build_type)},
+  return {{"version", std::string(facts.version)},
+          {"git", std::string(facts.git)},
+          {"compiler", std::string(facts.compiler)},
+          {"build_type", std::string(facts.build_type)},
           {"flags", std::string(facts.flags)}};
 }
 
@@ -99,7 +100,8 @@ std::string host_name() {
 
 std::string shell_text(const std::vector<std::string>& words) {
   const auto plain = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("-_./=:,+@%").find(c) != std::string::npos;
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("-_./=:,+@%").find(c) != std::string::npos;
   };
   std::string text;
   for (const std::string& word : words) {

@@ -16,7 +16,7 @@ struct RunOrigin {
   std::string case_name, case_file;
   std::vector<std::string> case_options;  ///< --set and the like, as typed
   std::vector<std::string> command_line;
-  std::string backend;                    ///< in use
+  std::string backend;  ///< in use
   int threads = 0;
   WallTime started;
 };
@@ -27,7 +27,7 @@ struct RunEnd {
   std::string outcome;  ///< in few words: finished, stopped by what, which kind of error
   std::string message;  ///< of the error, if there was one
   std::int64_t steps = 0;
-  double time = 0;      ///< reached [s]
+  double time = 0;  ///< reached [s]
   WallTime finished;
 };
 

@@ -145,8 +145,8 @@ std::vector<Section> Section::list(const std::string& key) {
   std::vector<Section> sections;
   const CaseNode* node = ask(key);
   if (!node) return sections;
-  require_at(node->key_place, node->kind == CaseNode::Kind::list, '"', key, "\" must be a list of tables; write [[", key,
-             "]] above its keys");
+  require_at(node->key_place, node->kind == CaseNode::Kind::list, '"', key, "\" must be a list of tables; write [[",
+             key, "]] above its keys");
   for (const CaseNode& item : node->children) {
     require_kind(item, CaseNode::Kind::table, key);
     sections.emplace_back(table_->add(key, ResolvedTable::Kind::list_item, &item));

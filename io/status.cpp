@@ -1,10 +1,9 @@
 #include "io/status.hpp"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <cmath>
-
-#include <fmt/format.h>
 
 #include "io/clock.hpp"
 #include "io/file.hpp"

@@ -24,10 +24,10 @@ struct StepFacts {
   double cfl = 0;             ///< max_speed dt / spacing [-]
   double kinetic_energy = 0;  ///< [J/m] in 2-D, [J] in 3-D
   double potential_energy = 0;
-  double energy_ratio = 1;    ///< kinetic + potential over their initial sum [-]
-  double density_error = 0;   ///< root mean square of n/n0 - 1 inside the fluid [-]
+  double energy_ratio = 1;   ///< kinetic + potential over their initial sum [-]
+  double density_error = 0;  ///< root mean square of n/n0 - 1 inside the fluid [-]
   std::int64_t particles = 0;
-  std::int64_t lost = 0;      ///< particles retired since the start
+  std::int64_t lost = 0;        ///< particles retired since the start
   std::vector<Notice> notices;  ///< since the facts were last asked for
 };
 

@@ -1,10 +1,9 @@
 #include "io/summary.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <algorithm>
-
-#include <fmt/format.h>
 
 namespace greenwater {
 namespace {

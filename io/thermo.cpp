@@ -19,8 +19,8 @@ std::string thermo_line(const StepFacts& facts, double ms_per_step, double eta) 
 
 std::vector<std::string> history_header(int dimension) {
   const std::string energy = dimension == 2 ? "[J/m]" : "[J]";
-  return {"step",   "time[s]",     "dt[s]",    "iterations", "residual[-]", "umax[m/s]", "cfl[-]", "E_kin" + energy,
-          "E_pot" + energy, "E/E0[-]", "n_err[-]", "particles", "lost", "ms_per_step"};
+  return {"step",           "time[s]",        "dt[s]",   "iterations", "residual[-]", "umax[m/s]", "cfl[-]",
+          "E_kin" + energy, "E_pot" + energy, "E/E0[-]", "n_err[-]",   "particles",   "lost",      "ms_per_step"};
 }
 
 std::vector<double> history_row(const StepFacts& facts, double ms_per_step) {

@@ -1,11 +1,11 @@
 // The one file that knows the TOML library: text to CaseNode.
 
-#include <algorithm>
-#include <charconv>
-#include <regex>
-#include <sstream>
-
 #include <toml++/toml.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <sstream>
 
 #include "io/case_node.hpp"
 
@@ -77,18 +77,34 @@ CaseNode convert(const toml::node& source, const Text& text) {
   return node;
 }
 
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+/// A point without a digit on that side of it (-1 before, +1 behind), and with one on the other.
+bool lonely_point(std::string_view value, int side) {
+  for (std::size_t i = 1; i < value.size(); ++i) {  // value[0] is the equals sign
+    const char before = value[i - 1], behind = i + 1 < value.size() ? value[i + 1] : ' ';
+    const char lacking = side < 0 ? before : behind, other = side < 0 ? behind : before;
+    if (value[i] == '.' && !is_digit(lacking) && is_digit(other)) return true;
+  }
+  return false;
+}
+
+bool starts_with_word(std::string_view value) {
+  const auto first = value.find_first_not_of(" \t", 1);
+  return !value.empty() && first != std::string_view::npos && is_letter(value[first]);
+}
+
 /// What to do about a syntax error, from the library's words and the line that it stands on.
 std::string cure(const std::string& fault, const std::string& line) {
-  static const std::regex bare_point(R"((^|[^0-9])\.[0-9])");
-  static const std::regex open_point(R"([0-9]\.([^0-9]|$))");
-  static const std::regex bare_word(R"(=\s*[A-Za-z])");
   const std::string value = line.substr(std::min(line.find('='), line.size()));
   if (fault.find("redefine") != std::string::npos) return "; a key or table stands only once: delete or rename one";
   if (line.starts_with('[') && fault.find("expected ']'") != std::string::npos) return "; close the bracket: [name]";
-  if (value.empty() && line.find('[') == std::string::npos) return "; a line is `key = value`, `[table]` or `# comment`";
-  if (std::regex_search(value, bare_point)) return "; write a digit before the point: 0.5, not .5";
-  if (std::regex_search(value, open_point)) return "; write a digit after the point: 5.0, not 5.";
-  if (std::regex_search(value, bare_word)) return "; a text needs quotes: key = \"text\"";
+  if (value.empty() && line.find('[') == std::string::npos)
+    return "; a line is `key = value`, `[table]` or `# comment`";
+  if (lonely_point(value, -1)) return "; write a digit before the point: 0.5, not .5";
+  if (lonely_point(value, 1)) return "; write a digit after the point: 5.0, not 5.";
+  if (starts_with_word(value)) return "; a text needs quotes: key = \"text\"";
   if (std::count(line.begin(), line.end(), '"') % 2 == 1) return "; a closing quote is missing";
   return {};
 }

@@ -1,8 +1,8 @@
 #include "io/vtp.hpp"
 
-#include <bit>
-
 #include <fmt/format.h>
+
+#include <bit>
 
 namespace greenwater {
 
@@ -14,9 +14,8 @@ void Vtp::declare(Section section, const std::string& name, const char* type, in
   const bool field = section == Section::field_data;
   const std::string shape = field ? fmt::format("NumberOfTuples=\"{}\"", values / static_cast<std::size_t>(components))
                                   : fmt::format("NumberOfComponents=\"{}\"", components);
-  sections_[static_cast<int>(section)] +=
-      fmt::format("<DataArray type=\"{}\" Name=\"{}\" {} format=\"appended\" offset=\"{}\"/>\n", type, name, shape,
-                  data_.size());
+  sections_[static_cast<int>(section)] += fmt::format(
+      "<DataArray type=\"{}\" Name=\"{}\" {} format=\"appended\" offset=\"{}\"/>\n", type, name, shape, data_.size());
 }
 
 void Vtp::append(const char* first, std::size_t bytes) {

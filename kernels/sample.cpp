@@ -144,7 +144,7 @@ double wave_front(const Fluid& fluid) {
 double surface_height(const Fluid& fluid, coord at) {
   const auto x = Read<CoordField>(fluid.particles.position);
   const int up = fluid.particles.dim - 1;
-  const coord half = fluid.spacing / 2;
+  const coord half = fluid.spacing / 2 * (1 + 1e-9);  // a lattice column beside x counts, whatever the round-off
   coord top = std::numeric_limits<coord>::lowest();
   Kokkos::parallel_reduce(
       "greenwater::surface_height", Range(0, fluid.particles.count),

@@ -69,19 +69,16 @@ quiet_openmp() {
   export OMP_PROC_BIND="${OMP_PROC_BIND:-false}"
 }
 
-# Runs a command with its output kept in a log, which is shown only when the command fails. A line says what is going
-# on if it takes longer than two seconds.
+# Runs a command with its output kept in a log, which is shown only when the command fails. If it takes longer than two
+# seconds, a line says what is going on.
 quietly() { # what log command...
   local what=$1 log=$2 notice status=0
   shift 2
   mkdir -p "$(dirname "$log")"
-  (
-    sleep 2
-    say "$what ..."
-  ) 2>&2 >/dev/null &
+  # The sleep gets no output of ours: it may outlive us by a moment, and whoever reads our output would wait for it.
+  (sleep 2 >/dev/null 2>&1 && say "$what ... (log: $log)") >/dev/null &
   notice=$!
   "$@" >"$log" 2>&1 || status=$?
-  # The subshell may already be gone; its sleep, if any, ends by itself and says nothing.
   kill "$notice" 2>/dev/null || true
   wait "$notice" 2>/dev/null || true
   if [ "$status" -ne 0 ]; then
@@ -97,13 +94,13 @@ build_preset() { # preset cmake-build-arguments...
   shift
   march=${GREENWATER_MARCH:-$(cmake_cache_value "$root/build/$preset" GREENWATER_MARCH)}
   march=${march:-native}
-  "$root/scripts/setup" --if-needed --march "$march"
+  "$root/scripts/setup" --if-needed --march "$march" || return 1
   cd "$root"
   if [ ! -f "build/$preset/build.ninja" ] || [ "$(cmake_cache_value "build/$preset" GREENWATER_MARCH)" != "$march" ]; then
     quietly "Configuring build/$preset" "build/$preset/configure.log" \
       cmake --preset "$preset" "-DGREENWATER_MARCH=$march" || return 1
   fi
-  quietly "Building build/$preset (the first time takes minutes)" "build/$preset/build.log" \
+  quietly "Building build/$preset" "build/$preset/build.log" \
     cmake --build "build/$preset" "$@" || return 1
   cd - >/dev/null
 }
