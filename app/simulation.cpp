@@ -67,7 +67,10 @@ void Simulation::look_after(const StepReport& report) {
   if (report.stopped > 0)
     note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
   if (report.retired > 0)
-    note("lost", text_of(report.retired, " particles left the domain and were retired"), report.retired);
+    note("lost", text_of("particles left the domain and were retired; so far ", retired_, " with ",
+                         static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
+                         scene_.dimension == 2 ? " kg/m" : " kg"),
+         report.retired);
   if (report.solve.converged) return;
   const std::string text =
       text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",

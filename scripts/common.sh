@@ -97,10 +97,10 @@ build_preset() { # preset cmake-build-arguments...
   "$root/scripts/setup" --if-needed --march "$march" || return 1
   cd "$root"
   if [ ! -f "build/$preset/build.ninja" ] || [ "$(cmake_cache_value "build/$preset" GREENWATER_MARCH)" != "$march" ]; then
-    quietly "Configuring build/$preset" "build/$preset/configure.log" \
+    quietly "Configuring build/$preset" "$root/build/$preset/configure.log" \
       cmake --preset "$preset" "-DGREENWATER_MARCH=$march" || return 1
   fi
-  quietly "Building build/$preset" "build/$preset/build.log" \
+  quietly "Building build/$preset" "$root/build/$preset/build.log" \
     cmake --build "build/$preset" "$@" || return 1
   cd - >/dev/null
 }

@@ -187,3 +187,31 @@ TEST_CASE("probes read a lattice at rest", "[unit][probes]") {
   CHECK(simulation.sample(2) == 0);            // no water at the plate
   CHECK(simulation.sample(4) == 5000);
 }
+
+TEST_CASE("what leaves the domain is counted and its mass told, and the rest goes on", "[unit][run]") {
+  Simulation simulation(scene_of("dam_break_rigid/quick.toml", {"domain.min=[-0.1, -0.1]", "domain.max=[0.22, 0.6]"}));
+  while (simulation.time() < 0.06) simulation.step();
+  const StepFacts facts = simulation.facts();
+  REQUIRE(facts.lost > 0);
+  CHECK(facts.lost + facts.particles == 5000);
+  const auto told = std::find_if(facts.notices.begin(), facts.notices.end(), [](const Notice& n) { return n.kind == "lost"; });
+  REQUIRE(told != facts.notices.end());
+  CHECK(told->count == facts.lost);
+  CHECK(told->text.find("kg/m") != std::string::npos);
+}
+
+TEST_CASE("initial velocity and body force may be formulas", "[unit][run]") {
+  const Scene scene = scene_of("hydrostatic/tank.toml", {"fluid.0.velocity=[\"-2*y\", \"0.1*x + t\"]", "time.gravity=[0, 0]",
+                                                         "effects.body_force.acceleration=[\"3*x\", \"cos(t)\"]"});
+  Simulation simulation(scene);
+  const Particles& p = simulation.fluid().particles;
+  for (int i = 0; i < p.count; ++i) {
+    CHECK(host(p.velocity)(i, 0) == Approx(-2 * host(p.position)(i, 1)));
+    CHECK(host(p.velocity)(i, 1) == Approx(0.1 * host(p.position)(i, 0)));
+  }
+  const auto start = by_id(simulation.fluid(), Kokkos::subview(p.position, Kokkos::ALL(), 0));
+  simulation.step();
+  REQUIRE(p.extras.size() == 1);
+  const auto force = by_id(simulation.fluid(), Kokkos::subview(p.extras[0].values, Kokkos::ALL(), 0));
+  for (std::size_t i = 0; i < start.size(); ++i) CHECK(force[i] == Approx(3 * start[i]));
+}
