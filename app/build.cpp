@@ -50,7 +50,9 @@ struct PlateFrame {
 PlateFrame frame_of(const PlateCase& plate) {
   const double s = std::sin(plate.angle), c = std::cos(plate.angle);
   PlateFrame frame{{s, c, 0}, {c, -s, 0}, plate.base};
-  const double back = plate.base_side == "upstream" ? 0 : plate.base_side == "centre" ? plate.thickness / 2 : plate.thickness;
+  const double back = plate.base_side == "upstream" ? 0
+                      : plate.base_side == "centre" ? plate.thickness / 2
+                                                    : plate.thickness;
   for (int d = 0; d < 2; ++d) frame.corner[d] -= back * frame.right[d];
   return frame;
 }
@@ -91,7 +93,8 @@ std::vector<Point> lattice(const Scene& scene) {
   for (int j = 0; j < ny; ++j)
     for (int i = 0; i < nx; ++i) {
       const Point x{fluid.min[0] + (i + 0.5) * l0, fluid.min[1] + (j + 0.5) * l0, 0};
-      if (std::none_of(scene.plates.begin(), scene.plates.end(), [&](const auto& plate) { return inside_plate(plate, x); }))
+      if (std::none_of(scene.plates.begin(), scene.plates.end(),
+                       [&](const auto& plate) { return inside_plate(plate, x); }))
         points.push_back(x);
     }
   return points;
@@ -99,7 +102,8 @@ std::vector<Point> lattice(const Scene& scene) {
 
 Particles build_particles(const Scene& scene) {
   const std::vector<Point> points = lattice(scene);
-  require_at(scene.fluid.place, !points.empty(), "the fluid's region holds no particle: enlarge it or take a smaller mps.spacing");
+  require_at(scene.fluid.place, !points.empty(),
+             "the fluid's region holds no particle: enlarge it or take a smaller mps.spacing");
   const auto expected = scene.mps.expected_particles;
   require_at(scene.mps.expected_place, expected == 0 || expected == static_cast<std::int64_t>(points.size()),
              "the region holds ", points.size(), " particles, not the expected ", expected,

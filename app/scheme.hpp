@@ -11,8 +11,8 @@ namespace greenwater {
 /// What happened in a step.
 struct StepReport {
   SolveReport solve;
-  int stopped = 0;       // ways that crossed a wall and were stopped there
-  int retired = 0;       // particles that left the domain
+  int stopped = 0;  // ways that crossed a wall and were stopped there
+  int retired = 0;  // particles that left the domain
 };
 
 class Scheme {
@@ -25,7 +25,7 @@ class Scheme {
 struct ClassicOptions {
   PressureOptions pressure;
   CgOptions cg;
-  bool jacobi = true;         // precondition with the diagonal
+  bool jacobi = true;               // precondition with the diagonal
   real surface_ratio = real(0.97);  // beta: n < beta n^0 is the surface
 };
 

@@ -67,9 +67,10 @@ void Simulation::look_after(const StepReport& report) {
   if (report.stopped > 0)
     note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
   if (report.retired > 0)
-    note("lost", text_of("particles left the domain and were retired; so far ", retired_, " with ",
-                         static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
-                         scene_.dimension == 2 ? " kg/m" : " kg"),
+    note("lost",
+         text_of("particles left the domain and were retired; so far ", retired_, " with ",
+                 static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
+                 scene_.dimension == 2 ? " kg/m" : " kg"),
          report.retired);
   if (report.solve.converged) return;
   const std::string text =
@@ -90,8 +91,6 @@ void Simulation::note(const std::string& kind, const std::string& text, std::int
 
 StepFacts Simulation::facts() {
   const FluidSums sums = fluid_sums(fluid_, potential_zero_);
-  require<NumericsError>(std::isfinite(sums.max_speed), "step ", steps_, ", t = ", time(),
-                         " s: a velocity is not a number any more");
   StepFacts facts;
   facts.step = steps_;
   facts.time = time();
@@ -148,7 +147,8 @@ Table Simulation::fluid_table() const {
 std::vector<std::array<double, 6>> Simulation::wall_segments() const {
   std::vector<std::array<double, 6>> segments;
   for (const WallFace& face : walls_.faces)
-    segments.push_back({face.end[0][0], face.end[0][1], face.end[0][2], face.end[1][0], face.end[1][1], face.end[1][2]});
+    segments.push_back(
+        {face.end[0][0], face.end[0][1], face.end[0][2], face.end[1][0], face.end[1][1], face.end[1][2]});
   return segments;
 }
 

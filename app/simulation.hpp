@@ -13,8 +13,8 @@ class Simulation {
   /// Throws CaseError when the scene cannot be built.
   explicit Simulation(const Scene& scene);
 
-  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or a
-  /// number is none any more; the state is then that of the failed step.
+  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or meets
+  /// a number that is none; the state is then that of the failed step.
   void step();
 
   double time() const { return fluid_.time; }

@@ -76,7 +76,8 @@ std::map<std::string, double> time_in_turn(const std::vector<Part>& parts) {
       const auto start = std::chrono::steady_clock::now();
       part.run();
       Kokkos::fence();
-      times[part.name].push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+      times[part.name].push_back(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
   std::map<std::string, double> medians;
   for (auto& [name, all] : times) {
@@ -112,11 +113,16 @@ void bench(coord l0, bool first) {
       {"assemble", [&] { kept.assemble(fluid, dt); }},
       {"apply_kept", [&] { kept.apply(p, Ap); }},
       {"apply_recomputed", [&] { recomputed.apply(p, Ap); }},
-      {"solve_from_zero", [&] { Kokkos::deep_copy(p, real(0)); report = cg.solve(kept, *jacobi, p); }},
+      {"solve_from_zero",
+       [&] {
+         Kokkos::deep_copy(p, real(0));
+         report = cg.solve(kept, *jacobi, p);
+       }},
       {"gradient", [&] { pressure_gradient(fluid); }},
   });
-  std::cout << (first ? "" : ",") << "\n  {\"particles\": " << fluid.particles.count << ", \"entries\": " << fluid.rows.entries()
-            << ", \"image_entries\": " << fluid.rows.image_entries() << ", \"iterations\": " << report.iterations;
+  std::cout << (first ? "" : ",") << "\n  {\"particles\": " << fluid.particles.count
+            << ", \"entries\": " << fluid.rows.entries() << ", \"image_entries\": " << fluid.rows.image_entries()
+            << ", \"iterations\": " << report.iterations;
   for (const auto& [name, ms] : medians) std::cout << ", \"" << name << "_ms\": " << ms;
   std::cout << ", \"recomputed_over_kept\": " << medians.at("apply_recomputed") / medians.at("apply_kept") << "}";
 }
@@ -128,9 +134,10 @@ int main(int argc, char** argv) {
   const char* policy = std::getenv("OMP_WAIT_POLICY");
   Runtime runtime(0);
   const BuildFacts& build = build_facts();
-  std::cout << "{\"git\": \"" << build.git << "\", \"kokkos\": \"" << build.kokkos_version << "\", \"flags\": \"" << build.flags
-            << "\", \"space\": \"" << Runtime::space_name() << "\", \"threads\": " << Runtime::concurrency()
-            << ", \"OMP_WAIT_POLICY\": \"" << (policy ? policy : "unset") << "\", \"sizes\": [";
+  std::cout << "{\"git\": \"" << build.git << "\", \"kokkos\": \"" << build.kokkos_version << "\", \"flags\": \""
+            << build.flags << "\", \"space\": \"" << Runtime::space_name()
+            << "\", \"threads\": " << Runtime::concurrency() << ", \"OMP_WAIT_POLICY\": \""
+            << (policy ? policy : "unset") << "\", \"sizes\": [";
   std::vector<double> spacings;
   for (int k = 1; k < argc; ++k) spacings.push_back(std::atof(argv[k]) / 1000);
   if (spacings.empty()) spacings = {0.008, 0.004, 0.002};

@@ -9,12 +9,12 @@
 
 namespace greenwater {
 
-using ScalarField = Kokkos::View<real*, Memory>;    // (i)
-using VectorField = Kokkos::View<real**, Memory>;   // (i, axis), axis < dimension
-using CoordField = Kokkos::View<coord**, Memory>;   // (i, axis)
-using IndexField = Kokkos::View<int*, Memory>;
-using OffsetField = Kokkos::View<std::int64_t*, Memory>;  // where a row begins: more entries than an int counts
-using FlagField = Kokkos::View<std::uint8_t*, Memory>;
+using ScalarField = Kokkos::View<real*, Device>;   // (i)
+using VectorField = Kokkos::View<real**, Device>;  // (i, axis), axis < dimension
+using CoordField = Kokkos::View<coord**, Device>;  // (i, axis)
+using IndexField = Kokkos::View<int*, Device>;
+using OffsetField = Kokkos::View<std::int64_t*, Device>;  // where a row begins: more entries than an int counts
+using FlagField = Kokkos::View<std::uint8_t*, Device>;
 template <class Field>
 using Read = typename Field::const_type;  // what a kernel only reads
 

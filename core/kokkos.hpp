@@ -37,7 +37,7 @@ using Space = Kokkos::Serial;
 #else
 using Space = Kokkos::DefaultExecutionSpace;
 #endif
-using Memory = Space::memory_space;
+using Device = Space::device_type;  // where fields live and who works on them
 
 /// Kokkos between construction and destruction. `threads` <= 0 leaves the choice to Kokkos and OMP_NUM_THREADS.
 /// The command line is never handed to Kokkos: 3.4 takes --help and --threads from it without a prefix.

@@ -7,7 +7,8 @@ namespace {
 
 void number_from_zero(const IndexField& id) {
   Kokkos::parallel_for(
-      "greenwater::number_particles", Range(0, static_cast<int>(id.extent(0))), KOKKOS_LAMBDA(const int i) { id(i) = i; });
+      "greenwater::number_particles", Range(0, static_cast<int>(id.extent(0))),
+      KOKKOS_LAMBDA(const int i) { id(i) = i; });
 }
 
 template <class Field>

@@ -19,8 +19,8 @@ struct Column {
 
 /// What the program hands to a file at one instant.
 struct Table {
-  std::string name;      ///< e.g. the fluid's name
-  double time = 0;       ///< [s]
+  std::string name;  ///< e.g. the fluid's name
+  double time = 0;   ///< [s]
   std::int64_t step = 0;
   std::size_t rows = 0;
   std::vector<Column> columns;

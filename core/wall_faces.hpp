@@ -10,10 +10,10 @@
 namespace greenwater {
 
 struct WallFace {
-  std::array<std::array<coord, 3>, 2> end;   // end points [m]; z = 0 in 2-D
-  std::array<coord, 3> velocity{};           // of the whole face over the step [m/s]
-  std::array<coord, 3> acceleration{};       // [m/s^2]
-  int body = 0;                              // which named geometry it belongs to
+  std::array<std::array<coord, 3>, 2> end;  // end points [m]; z = 0 in 2-D
+  std::array<coord, 3> velocity{};          // of the whole face over the step [m/s]
+  std::array<coord, 3> acceleration{};      // [m/s^2]
+  int body = 0;                             // which named geometry it belongs to
 };
 
 struct WallFaces {

@@ -92,7 +92,7 @@ ResolvedTable& ResolvedTable::add(const std::string& key, Kind how, const CaseNo
 
 std::string resolved_text(const ResolvedTable& root, const std::string& file_name) {
   std::ostringstream out;
-  out << "# Every value of " << file_name << " as it was used, in SI units (m, kg, s, Pa, N, rad).\n"
+  out << "# Every value of " << toml_text(file_name) << " as it was used, in SI units (m, kg, s, Pa, N, rad).\n"
       << "# Behind each: its unit, and where it came from (case, command line, default).\n";
   print(out, root);
   return out.str();

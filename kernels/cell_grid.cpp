@@ -44,9 +44,8 @@ void begin_cells(const IndexField& number, const IndexField& first) {
 
 void fill_cells(const IndexField& cell, const IndexField& next, const IndexField& order, int count) {
   Kokkos::parallel_for(
-      "greenwater::fill_cells", Range(0, count), KOKKOS_LAMBDA(const int i) {
-        order(Kokkos::atomic_fetch_add(&next(cell(i)), 1)) = i;
-      });
+      "greenwater::fill_cells", Range(0, count),
+      KOKKOS_LAMBDA(const int i) { order(Kokkos::atomic_fetch_add(&next(cell(i)), 1)) = i; });
 }
 
 KOKKOS_INLINE_FUNCTION void sift_down(const IndexField& order, int begin, int root, int size) {

@@ -1,5 +1,7 @@
 #include "kernels/density.hpp"
 
+#include "core/region.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -21,14 +23,14 @@ void mark_surface_in(const Fluid& fluid, real ratio, const FlagField& surface) {
   const auto first = Read<OffsetField>(fluid.rows.near.first);
   const real limit = ratio * fluid.density.reference.n0;
   Kokkos::parallel_for(
-      "greenwater::mark_surface", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        surface(i) = n(i) < limit || first(i + 1) - first(i) < Dim + 1;
-      });
+      "greenwater::mark_surface", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i) { surface(i) = n(i) < limit || first(i + 1) - first(i) < Dim + 1; });
 }
 
 }  // namespace
 
 void number_density(Fluid& fluid) {
+  Region region("density");
   const ScalarField n = fluid.particles.number_density;
   fluid.particles.dim == 2 ? number_density_in<2>(fluid, n) : number_density_in<3>(fluid, n);
 }

@@ -17,16 +17,16 @@ struct Kernel {
 struct Fluid {
   Particles particles;
   MirrorWalls walls;
-  CellGrid grid;           // the particles are in its order since the last sort
-  NeighborRows rows;       // with the weight of the Laplacian beside each entry
-  Kernel density;          // of n
-  Kernel gradient;         // of grad p and div u
-  Kernel laplacian;        // of the pressure operator and of viscosity
-  coord spacing = 0;       // l0 [m]
-  real rho = 1000;         // [kg/m^3]
+  CellGrid grid;                // the particles are in its order since the last sort
+  NeighborRows rows;            // with the weight of the Laplacian beside each entry
+  Kernel density;               // of n
+  Kernel gradient;              // of grad p and div u
+  Kernel laplacian;             // of the pressure operator and of viscosity
+  coord spacing = 0;            // l0 [m]
+  real rho = 1000;              // [kg/m^3]
   real gravity[3] = {0, 0, 0};  // g [m/s^2]
-  real time = 0;           // t at the start of the step [s]
-  int body_force = -1;     // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
+  real time = 0;                // t at the start of the step [s]
+  int body_force = -1;          // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
 };
 
 /// Device view of all that drives a particle beside pressure: g, and a body force where a scene names one.

@@ -37,9 +37,7 @@ Mirror mirror_of(const WallFace& wall) {
   return m;
 }
 
-coord cosine(const Mirror& f, const Mirror& g) {
-  return f.normal[0] * g.normal[0] + f.normal[1] * g.normal[1];
-}
+coord cosine(const Mirror& f, const Mirror& g) { return f.normal[0] * g.normal[0] + f.normal[1] * g.normal[1]; }
 
 coord distance_to_face(const Mirror& m, coord x, coord y) {
   const coord tx = m.end[1][0] - m.end[0][0], ty = m.end[1][1] - m.end[0][1];
@@ -124,7 +122,7 @@ MirrorWalls make_mirror_walls(const WallFaces& walls, const GridShape& grid, coo
   made.tolerance = 1e-9 * spacing;
   const std::vector<Mirror> mirrors = all_mirrors(walls, 1e-6 * spacing);
   made.count = static_cast<int>(mirrors.size());
-  made.mirror = uncleared<Kokkos::View<Mirror*, Memory>>("greenwater::mirrors", mirrors.size());
+  made.mirror = uncleared<Kokkos::View<Mirror*, Device>>("greenwater::mirrors", mirrors.size());
   Kokkos::deep_copy(made.mirror, Kokkos::View<const Mirror*, Kokkos::HostSpace>(mirrors.data(), mirrors.size()));
   bin(made, mirrors, grid);
   return made;

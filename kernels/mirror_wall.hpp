@@ -49,11 +49,11 @@ KOKKOS_INLINE_FUNCTION Vec<Dim> image_velocity(const Mirror& m, const Vec<Dim>& 
 
 /// The mirrors of a scene, and for each cell of the grid those that a particle in it can reach.
 struct MirrorWalls {
-  int count = 0;                                   // 0: no walls, and then nothing here is allocated
-  Kokkos::View<Mirror*, Memory> mirror;            // faces first, then corners
-  IndexField first, reach;                         // of cell c: reach(first(c)) ... reach(first(c + 1) - 1), ascending;
-                                                   // after the last cell: all of them
-  coord tolerance = 0;                             // a face's ends are that much longer than they are [m]
+  int count = 0;                         // 0: no walls, and then nothing here is allocated
+  Kokkos::View<Mirror*, Device> mirror;  // faces first, then corners
+  IndexField first, reach;               // of cell c: reach(first(c)) ... reach(first(c + 1) - 1), ascending;
+                                         // after the last cell: all of them
+  coord tolerance = 0;                   // a face's ends are that much longer than they are [m]
 };
 
 /// Makes mirrors of the faces and of every right-angled corner between two of them, and bins them into the grid.
@@ -63,7 +63,7 @@ MirrorWalls make_mirror_walls(const WallFaces& walls, const GridShape& grid, coo
 /// Device view of the mirrors near one cell: the questions of sight.
 template <int Dim>
 struct Sight {
-  Kokkos::View<const Mirror*, Memory> mirror;
+  Kokkos::View<const Mirror*, Device> mirror;
   Read<IndexField> reach;
   int begin, end;
   coord tolerance;

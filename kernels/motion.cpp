@@ -1,5 +1,7 @@
 #include "kernels/motion.hpp"
 
+#include "core/region.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -39,6 +41,17 @@ KOKKOS_INLINE_FUNCTION bool stop_at_faces(const MirrorWalls& walls, const GridSh
   return stopped;
 }
 
+// Moves particle i by dx, or as far as the walls let it. Returns 1 when they stopped it.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION int move(const MirrorWalls& walls, const GridShape& grid, const CoordField& x,
+                                const VectorField& u, int i, Vec<Dim, coord> dx, Vec<Dim> ui) {
+  const auto xi = load<Dim>(x, i);
+  const int stopped = stop_at_faces(walls, grid, xi, dx, ui) ? 1 : 0;
+  store(u, i, ui);
+  store(x, i, along(xi, coord(1), dx));
+  return stopped;
+}
+
 template <int Dim>
 int predict_in(Fluid& fluid, real dt) {
   const auto grid = fluid.grid.shape();
@@ -51,16 +64,13 @@ int predict_in(Fluid& fluid, real dt) {
   Kokkos::parallel_reduce(
       "greenwater::predict", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, int& sum) {
-        const auto xi = load<Dim>(x, i);
         auto ui = load<Dim>(u, i);
         Vec<Dim, coord> dx;
         for (int d = 0; d < Dim; ++d) {
           ui[d] += dt * (g[d] + a(i, d));
           dx[d] = dt * ui[d];
         }
-        sum += stop_at_faces(walls, grid, xi, dx, ui);
-        store(u, i, ui);
-        store(x, i, along(xi, coord(1), dx));
+        sum += move(walls, grid, x, u, i, dx, ui);
       },
       stops);
   return stops;
@@ -77,16 +87,13 @@ int correct_in(Fluid& fluid, real dt) {
   Kokkos::parallel_reduce(
       "greenwater::correct", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, int& sum) {
-        const auto xi = load<Dim>(x, i);
         auto ui = load<Dim>(u, i);
         Vec<Dim, coord> dx;
         for (int d = 0; d < Dim; ++d) {
           ui[d] += dt * a(i, d);
           dx[d] = coord(dt) * dt * a(i, d);
         }
-        sum += stop_at_faces(walls, grid, xi, dx, ui);
-        store(u, i, ui);
-        store(x, i, along(xi, coord(1), dx));
+        sum += move(walls, grid, x, u, i, dx, ui);
       },
       stops);
   return stops;
@@ -132,6 +139,7 @@ void clear_acceleration(Fluid& fluid) {
 }
 
 int predict(Fluid& fluid, real dt) {
+  Region region("predict");
   return fluid.particles.dim == 2 ? predict_in<2>(fluid, dt) : predict_in<3>(fluid, dt);
 }
 
@@ -143,11 +151,13 @@ void clip_pressure(Fluid& fluid) {
 }
 
 void pressure_gradient(Fluid& fluid) {
+  Region region("gradient");
   const VectorField a = fluid.particles.acceleration;
   fluid.particles.dim == 2 ? pressure_gradient_in<2>(fluid, a) : pressure_gradient_in<3>(fluid, a);
 }
 
 int correct(Fluid& fluid, real dt) {
+  Region region("correct");
   return fluid.particles.dim == 2 ? correct_in<2>(fluid, dt) : correct_in<3>(fluid, dt);
 }
 

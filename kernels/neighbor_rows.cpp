@@ -123,8 +123,7 @@ std::int64_t begin_rows(const OffsetField& first, int count) {
 }
 
 void grow_first(OffsetField& first, int count) {
-  if (static_cast<int>(first.extent(0)) < count + 1)
-    first = uncleared<OffsetField>("greenwater::row_first", count + 1);
+  if (static_cast<int>(first.extent(0)) < count + 1) first = uncleared<OffsetField>("greenwater::row_first", count + 1);
 }
 
 // A quarter more than is needed now, so that a splash does not regrow the rows at each step.

@@ -12,8 +12,8 @@ namespace greenwater {
 /// Compressed rows: the entries of particle i are first(i) ... first(i + 1) - 1.
 struct Rows {
   OffsetField first;
-  IndexField index;     // neighbour j
-  ScalarField weight;   // w of the Laplacian's radius, at the positions of the last build [-]
+  IndexField index;    // neighbour j
+  ScalarField weight;  // w of the Laplacian's radius, at the positions of the last build [-]
 };
 
 /// Rows of images: entry k is the image of index(k) in mirror number mirror(k). A particle may be its own neighbour here.
@@ -30,7 +30,7 @@ struct Around {
   Read<CoordField> x;
   Read<OffsetField> first, image_first;
   Read<IndexField> index, image_index, image_mirror;
-  Kokkos::View<const Mirror*, Memory> mirrors;
+  Kokkos::View<const Mirror*, Device> mirrors;
 
   /// Calls f(j, r_ij, m) for every neighbour and every image of particle i, in the same order each time. r_ij points
   /// from i to the neighbour or image [m]; m is the mirror of an image, null for a neighbour.
@@ -73,7 +73,7 @@ class NeighborRows {
 
   Rows near;
   ImageRows images;  // without walls: never allocated
-  Kokkos::View<const Mirror*, Memory> mirrors;
+  Kokkos::View<const Mirror*, Device> mirrors;
 
  private:
   std::int64_t entries_ = 0, image_entries_ = 0;

@@ -8,11 +8,11 @@ namespace greenwater {
 enum class PressureSource { density, divergence };
 
 struct PressureOptions {
-  real diagonal_factor = 1;    // C    multiplies the diagonal (Tanaka and Masunaga 2010; the paper's Table 2: 1.05)
-  real source_factor = 1;      // gamma  multiplies the density source (the paper's Table 2: 1.0)
-  real compressibility = 0;    // alpha_c [1/Pa]; adds rho alpha_c / dt^2 to the diagonal
+  real diagonal_factor = 1;  // C    multiplies the diagonal (Tanaka and Masunaga 2010; the paper's Table 2: 1.05)
+  real source_factor = 1;    // gamma  multiplies the density source (the paper's Table 2: 1.0)
+  real compressibility = 0;  // alpha_c [1/Pa]; adds rho alpha_c / dt^2 to the diagonal
   PressureSource source = PressureSource::density;
-  bool keep_weights = true;    // false: computed from the positions each time, a third of the memory
+  bool keep_weights = true;  // false: computed from the positions each time, a third of the memory
 };
 
 /// (A p)_i = K (C p_i sum_j w_ij - sum_j w_ij p_j) + (rho alpha_c / dt^2) p_i,  K = 2 d / (lambda n^0); j runs over
@@ -32,8 +32,8 @@ class PressureSystem {
   void apply(const ScalarField& p, const ScalarField& Ap) const;
 
   int count() const { return fluid_ ? fluid_->particles.count : 0; }
-  const ScalarField& rhs() const { return rhs_; }             // b [Pa/m^2]
-  const ScalarField& diagonal() const { return diagonal_; }   // [1/m^2]; 1 where the surface is
+  const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
+  const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
   const FlagField& fixed() const { return fluid_->particles.surface; }
 
  private:

@@ -114,9 +114,8 @@ std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord leng
     const int pieces = static_cast<int>(std::ceil(whole / length - 1e-9));
     for (int k = 0; k < pieces; ++k) {
       const coord s = (k + 0.5) / pieces;
-      patches.push_back({{face.end[0][0] + s * tx, face.end[0][1] + s * ty, 0},
-                         {-ty / whole, tx / whole, 0},
-                         whole / pieces});
+      patches.push_back(
+          {{face.end[0][0] + s * tx, face.end[0][1] + s * ty, 0}, {-ty / whole, tx / whole, 0}, whole / pieces});
     }
   }
   return patches;

@@ -47,10 +47,10 @@ std::int64_t particle_count(const Fluid& fluid, const std::array<coord, 3>& low,
 
 /// Sums over the fluid.
 struct FluidSums {
-  double kinetic = 0;          // [J/m] in 2-D, [J] in 3-D
-  double potential = 0;        // [J/m]; above `reference`, the point that has none
-  double max_speed = 0;        // [m/s]; not a number when any speed is not
-  double density_error = 0;    // root mean square of n / n^0 - 1 where no surface is [-]
+  double kinetic = 0;        // [J/m] in 2-D, [J] in 3-D
+  double potential = 0;      // [J/m]; above `reference`, the point that has none
+  double max_speed = 0;      // [m/s]; not a number when any speed is not
+  double density_error = 0;  // root mean square of n / n^0 - 1 where no surface is [-]
 };
 FluidSums fluid_sums(const Fluid& fluid, const std::array<coord, 3>& reference);
 

@@ -55,9 +55,9 @@ inline WallFace segment(coord x0, coord y0, coord x1, coord y1, int body = 0) {
 struct FluidOptions {
   int dim = 2;
   coord spacing = 0.1;
-  coord radius = 3.1;   // x spacing
+  coord radius = 3.1;  // x spacing
   real shift = real(0.05);
-  coord margin = 1;     // grid beyond the particles and walls [m]
+  coord margin = 1;  // grid beyond the particles and walls [m]
 };
 
 /// A fluid of particles at the given places between the given walls, sorted, with rows and number density.

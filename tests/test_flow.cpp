@@ -79,7 +79,8 @@ struct FrontPoint {
 };
 
 // Koshizuka and Oka, Nucl. Sci. Eng. 123:421 (1996), their MPS computation, read off the figure.
-constexpr FrontPoint koshizuka_oka_mps[] = {{0.778, 1.351}, {1.095, 1.637}, {1.381, 1.931}, {1.684, 2.268}, {2.043, 2.707}};
+constexpr FrontPoint koshizuka_oka_mps[] = {
+    {0.778, 1.351}, {1.095, 1.637}, {1.381, 1.931}, {1.684, 2.268}, {2.043, 2.707}};
 // Their experiment.
 constexpr FrontPoint koshizuka_oka_measured[] = {{1.153, 1.505}, {1.537, 1.892}, {1.935, 2.241}, {2.323, 2.615}};
 // Martin and Moyce, Phil. Trans. R. Soc. A 244:312 (1952), a = 2.25 in, read off the figure.
@@ -95,7 +96,8 @@ double time_of(const std::vector<FrontPoint>& front, double Z) {
 }
 
 template <std::size_t N>
-std::vector<double> lead_over(const char* name, const FrontPoint (&reference)[N], const std::vector<FrontPoint>& front) {
+std::vector<double> lead_over(const char* name, const FrontPoint (&reference)[N],
+                              const std::vector<FrontPoint>& front) {
   std::vector<double> ratios;
   std::cout << "front against " << name << ":";
   for (const auto& [T, Z] : reference) {
@@ -120,10 +122,13 @@ TEST_CASE("dam break: the front is that of published MPS, and the impact is surv
     if (std::isnan(reached_plate)) front.push_back({run.simulation.time() * scale, x / a});
     if (std::isnan(reached_plate) && x >= 0.6 - scene.mps.spacing / 2) reached_plate = run.simulation.time();
   }
-  for (const double ratio : lead_over("Koshizuka and Oka's MPS", koshizuka_oka_mps, front)) CHECK(ratio == Approx(1).epsilon(0.03));
+  for (const double ratio : lead_over("Koshizuka and Oka's MPS", koshizuka_oka_mps, front))
+    CHECK(ratio == Approx(1).epsilon(0.03));
   // Measured with a gate that is pulled up: any model without one leads, as published MPS does by 7 to 17 %.
-  for (const double ratio : lead_over("Koshizuka and Oka's measurement", koshizuka_oka_measured, front)) CHECK(ratio == Approx(0.88).margin(0.1));
-  for (const double ratio : lead_over("Martin and Moyce's measurement", martin_moyce, front)) CHECK(ratio == Approx(0.83).margin(0.1));
+  for (const double ratio : lead_over("Koshizuka and Oka's measurement", koshizuka_oka_measured, front))
+    CHECK(ratio == Approx(0.88).margin(0.1));
+  for (const double ratio : lead_over("Martin and Moyce's measurement", martin_moyce, front))
+    CHECK(ratio == Approx(0.83).margin(0.1));
   std::cout << "front at the plate " << reached_plate << " s, energy at the end " << run.energy << ", largest gain "
             << run.gain << ", fastest " << run.fastest << " m/s, stopped at walls " << run.stopped << ", outside "
             << run.outside << ", lost " << 5000 - run.simulation.fluid().particles.count << '\n';
@@ -194,15 +199,17 @@ TEST_CASE("what leaves the domain is counted and its mass told, and the rest goe
   const StepFacts facts = simulation.facts();
   REQUIRE(facts.lost > 0);
   CHECK(facts.lost + facts.particles == 5000);
-  const auto told = std::find_if(facts.notices.begin(), facts.notices.end(), [](const Notice& n) { return n.kind == "lost"; });
+  const auto told =
+      std::find_if(facts.notices.begin(), facts.notices.end(), [](const Notice& n) { return n.kind == "lost"; });
   REQUIRE(told != facts.notices.end());
   CHECK(told->count == facts.lost);
   CHECK(told->text.find("kg/m") != std::string::npos);
 }
 
 TEST_CASE("initial velocity and body force may be formulas", "[unit][run]") {
-  const Scene scene = scene_of("hydrostatic/tank.toml", {"fluid.0.velocity=[\"-2*y\", \"0.1*x + t\"]", "time.gravity=[0, 0]",
-                                                         "effects.body_force.acceleration=[\"3*x\", \"cos(t)\"]"});
+  const Scene scene =
+      scene_of("hydrostatic/tank.toml", {"fluid.0.velocity=[\"-2*y\", \"0.1*x + t\"]", "time.gravity=[0, 0]",
+                                         "effects.body_force.acceleration=[\"3*x\", \"cos(t)\"]"});
   Simulation simulation(scene);
   const Particles& p = simulation.fluid().particles;
   for (int i = 0; i < p.count; ++i) {

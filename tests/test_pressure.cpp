@@ -16,8 +16,8 @@ constexpr coord l0 = 0.1;
 WallFaces tank_with_plates() {
   WallFaces walls;
   walls.bodies = {"tank", "thin", "thick"};
-  walls.faces = {segment(0, 0, 2, 0),         segment(0, 0, 0, 3),           segment(2, 3, 2, 0),
-                 segment(0.7, 0, 0.7, 0.8, 1), segment(1.2, 0, 1.2, 0.5, 2),  segment(1.2, 0.5, 1.43, 0.5, 2),
+  walls.faces = {segment(0, 0, 2, 0),           segment(0, 0, 0, 3),          segment(2, 3, 2, 0),
+                 segment(0.7, 0, 0.7, 0.8, 1),  segment(1.2, 0, 1.2, 0.5, 2), segment(1.2, 0.5, 1.43, 0.5, 2),
                  segment(1.43, 0.5, 1.43, 0, 2)};
   return walls;
 }
@@ -197,13 +197,15 @@ double slope_of_column(coord wall_acceleration) {
   const CoordField x0("greenwater::test_start", fluid.particles.count, 2);
   Kokkos::deep_copy(x0, fluid.particles.position);
   predict(fluid, dt);
-  Kokkos::deep_copy(fluid.particles.position, x0);  // the equation on the lattice itself: nothing but the source differs
+  Kokkos::deep_copy(fluid.particles.position,
+                    x0);  // the equation on the lattice itself: nothing but the source differs
   mark_surface(fluid, real(0.97));
   PressureSystem system(source(PressureSource::divergence));
   system.assemble(fluid, dt);
   const auto preconditioner = make_jacobi();
   preconditioner->update(system);
-  REQUIRE(ConjugateGradient({.tolerance = real(1e-12)}).solve(system, *preconditioner, fluid.particles.pressure).converged);
+  REQUIRE(
+      ConjugateGradient({.tolerance = real(1e-12)}).solve(system, *preconditioner, fluid.particles.pressure).converged);
   const auto p = by_id(fluid, fluid.particles.pressure);
   const auto at = [&](int row) { return p[row * 20 + 10]; };
   return (at(20) - at(40)) / (20 * l0) / (fluid.rho * g);

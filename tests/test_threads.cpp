@@ -59,8 +59,8 @@ TEST_CASE("fingerprint of order", "[.fingerprint]") {
   const Fluid flat = fluid_at(random_cloud(5000, 2, 1, 2), walls, {.spacing = 0.03});
   const Fluid deep = fluid_at(random_cloud(5000, 3, 2), {}, {.dim = 3, .spacing = 0.06});
   const Fluid crowd = fluid_at(random_cloud(1500, 2, 3, 1e-3), {}, {.spacing = 0.03});
-  std::cout << "\nfingerprint " << std::hex << fingerprint(flat) << ' ' << fingerprint(deep) << ' ' << fingerprint(crowd)
-            << std::dec << std::endl;
+  std::cout << "\nfingerprint " << std::hex << fingerprint(flat) << ' ' << fingerprint(deep) << ' '
+            << fingerprint(crowd) << std::dec << std::endl;
 }
 
 TEST_CASE("order and rows are the same with 1, 2 and 4 threads", "[unit][threads]") {

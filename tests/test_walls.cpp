@@ -49,8 +49,8 @@ TEST_CASE("n = n0 beside a flat wall", "[unit][walls]") {
     for (const real shift : {0.0, 0.05}) {
       const coord reach = radius * l0;
       const Fluid floor = fluid_at(lattice(20, 12, l0), walls_of({segment(-2, 0, 4, 0)}), options_with(radius, shift));
-      const double error = largest_error(
-          floor, [&](coord x, coord y) { return x > reach && x < 2 - reach && y < 1.2 - reach; });
+      const double error =
+          largest_error(floor, [&](coord x, coord y) { return x > reach && x < 2 - reach && y < 1.2 - reach; });
       CHECK(error < 1e-12);
     }
 }
@@ -64,7 +64,8 @@ TEST_CASE("n = n0 in right-angled corners", "[unit][walls]") {
 }
 
 TEST_CASE("n = n0 in a closed box", "[unit][walls]") {
-  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 1.2), segment(2, 1.2, 2, 0), segment(2, 1.2, 0, 1.2)});
+  const auto walls =
+      walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 1.2), segment(2, 1.2, 2, 0), segment(2, 1.2, 0, 1.2)});
   const Fluid tank = fluid_at(lattice(20, 12, l0), walls, options_with(3.1, real(0.05)));
   CHECK(largest_error(tank, [](coord, coord) { return true; }) < 1e-12);
 }
@@ -82,9 +83,8 @@ TEST_CASE("n = n0 round a thick plate, but for its corners", "[unit][walls]") {
   const Positions right = lattice(10, 12, l0, 1.0);
   left.insert(left.end(), right.begin(), right.end());
   const Fluid tank = fluid_at(left, walls, options_with(3.1, real(0.05)));
-  const double error = largest_error(tank, [&](coord x, coord y) {
-    return y < 1.2 - 3.1 * l0 && x > 3.1 * l0 && x < 2 - 3.1 * l0;
-  });
+  const double error =
+      largest_error(tank, [&](coord x, coord y) { return y < 1.2 - 3.1 * l0 && x > 3.1 * l0 && x < 2 - 3.1 * l0; });
   CHECK(error < 1e-12);
 }
 
@@ -106,11 +106,11 @@ TEST_CASE("an image by way of the floor is not seen through a plate that stands 
 }
 
 TEST_CASE("sight is mutual to the last bit", "[unit][walls]") {
-  const auto walls = walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 2), segment(2, 2, 2, 0), segment(0.9, 0, 0.9, 0.7, 1),
-                               segment(0.9, 0.7, 1.13, 0.7, 1), segment(1.13, 0, 1.13, 0.7, 1), segment(0.5, 1, 0.8, 1.4, 2)});
+  const auto walls =
+      walls_of({segment(0, 0, 2, 0), segment(0, 0, 0, 2), segment(2, 2, 2, 0), segment(0.9, 0, 0.9, 0.7, 1),
+                segment(0.9, 0.7, 1.13, 0.7, 1), segment(1.13, 0, 1.13, 0.7, 1), segment(0.5, 1, 0.8, 1.4, 2)});
   Positions x = random_cloud(1500, 2, 12, 2);
-  x.erase(std::remove_if(x.begin(), x.end(),
-                         [](const auto& p) { return p[0] > 0.9 && p[0] < 1.13 && p[1] < 0.7; }),
+  x.erase(std::remove_if(x.begin(), x.end(), [](const auto& p) { return p[0] > 0.9 && p[0] < 1.13 && p[1] < 0.7; }),
           x.end());
   const Fluid fluid = fluid_at(x, walls, options_with(3.1, real(0.05)));
   const auto first = host(fluid.rows.images.first);

@@ -97,8 +97,6 @@ class Collision : public Effect {
 
 }  // namespace
 
-std::unique_ptr<Effect> make_collision(const CollisionOptions& options) {
-  return std::make_unique<Collision>(options);
-}
+std::unique_ptr<Effect> make_collision(const CollisionOptions& options) { return std::make_unique<Collision>(options); }
 
 }  // namespace greenwater
