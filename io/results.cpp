@@ -79,8 +79,8 @@ void write_column(const Place5& group, const Column& column, std::size_t rows, P
 }
 
 /// The frame is made without a name, brought to disk, and only then linked. Until then only the end of the file grows,
-/// behind what is in use: a run that is killed meanwhile leaves all earlier frames. What remains are the microseconds of
-/// the link itself (measured: one damaged file in 400 kills of a program that did nothing but write frames).
+/// behind what is in use: a run that is killed meanwhile leaves all earlier frames. What remains are the microseconds
+/// of the link itself (measured: one damaged file in 400 kills of a program that did nothing but write frames).
 void append(hid_t file, const Table& table, const std::string& name, const fs::path& path, Precision precision) {
   const std::string what = "frame " + name + " cannot be written";
   Hdf5Handle group = hdf5_made(H5Gcreate_anon(file, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path, what);
