@@ -11,7 +11,7 @@ int settle_rows(Fluid& fluid) {
     retired = fluid.grid.sort(fluid.particles);
   }
   Region region("rows");
-  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, fluid.laplacian.weight);
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
   return retired;
 }
 

@@ -91,7 +91,7 @@ void bench(coord l0, bool first) {
   const real dt = static_cast<real>(0.115 * l0);
   Fluid fluid = column(l0);
   fluid.grid.sort(fluid.particles);
-  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, fluid.laplacian.weight);
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
   number_density(fluid);
   mark_surface(fluid, real(0.97));
   PressureOptions options;
@@ -108,7 +108,7 @@ void bench(coord l0, bool first) {
   SolveReport report;
   const auto medians = time_in_turn({
       {"sort", [&] { fluid.grid.sort(fluid.particles); }},
-      {"rows", [&] { fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, fluid.laplacian.weight); }},
+      {"rows", [&] { fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid)); }},
       {"number_density", [&] { number_density(fluid); }},
       {"assemble", [&] { kept.assemble(fluid, dt); }},
       {"apply_kept", [&] { kept.apply(p, Ap); }},

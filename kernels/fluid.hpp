@@ -29,6 +29,13 @@ struct Fluid {
   int body_force = -1;          // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
 };
 
+/// What the rows of a fluid are made with.
+inline RowOptions row_options(const Fluid& fluid) {
+  const real widest =
+      larger(larger(fluid.density.weight.radius, fluid.gradient.weight.radius), fluid.laplacian.weight.radius);
+  return {fluid.laplacian.weight, widest};
+}
+
 /// Device view of all that drives a particle beside pressure: g, and a body force where a scene names one.
 template <int Dim>
 struct Drive {

@@ -11,13 +11,18 @@ struct Search {
   GridShape grid;
   MirrorWalls walls;
   Weight weight;
+  coord radius;  // of the search [m]
 
-  KOKKOS_INLINE_FUNCTION real weight_between(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
+  KOKKOS_INLINE_FUNCTION static coord distance2(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) {
     const auto r = difference(b, a);
-    return weight(static_cast<real>(sqrt(dot(r, r))));
+    return dot(r, r);
   }
 
-  // Calls f(j, w) for every neighbour of i.
+  KOKKOS_INLINE_FUNCTION bool within_reach(coord r2) const { return r2 < radius * radius; }
+
+  KOKKOS_INLINE_FUNCTION real weight_at(coord r2) const { return weight(static_cast<real>(sqrt(r2))); }
+
+  // Calls f(j, r^2) for every neighbour of i.
   template <class F>
   KOKKOS_INLINE_FUNCTION void neighbours(int i, F f) const {
     const auto xi = load<Dim>(x, i);
@@ -25,12 +30,12 @@ struct Search {
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
       if (j == i) return;
       const auto xj = load<Dim>(x, j);
-      const real w = weight_between(xi, xj);
-      if (w > 0 && (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, w);
+      const coord r2 = distance2(xi, xj);
+      if (within_reach(r2) && (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, r2);
     });
   }
 
-  // Calls f(j, k, w) for every image, of particle j in mirror k, that i sees.
+  // Calls f(j, k, r^2) for every image, of particle j in mirror k, that i sees.
   template <class F>
   KOKKOS_INLINE_FUNCTION void images(int i, F f) const {
     const auto xi = load<Dim>(x, i);
@@ -44,16 +49,16 @@ struct Search {
         // Always from the lower index: the same number for both, to the last bit.
         const bool forward = i <= j;
         const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
-        const real w = weight_between(a, image_position(mirror, b));
-        if (w > 0 && sight.sees_image(k, a, b)) f(j, k, w);
+        const coord r2 = distance2(a, image_position(mirror, b));
+        if (within_reach(r2) && sight.sees_image(k, a, b)) f(j, k, r2);
       });
     }
   }
 
   // An image is at least as far as its wall, or its corner, is.
   KOKKOS_INLINE_FUNCTION bool out_of_reach(const Mirror& mirror, const Vec<Dim, coord>& xi) const {
-    if (!Sight<Dim>::is_face(mirror)) return weight_between(xi, load_point(mirror)) <= 0;
-    return fabs(Sight<Dim>::side(mirror, xi)) >= weight.radius;
+    if (!Sight<Dim>::is_face(mirror)) return !within_reach(distance2(xi, load_point(mirror)));
+    return fabs(Sight<Dim>::side(mirror, xi)) >= radius;
   }
 
   KOKKOS_INLINE_FUNCTION static Vec<Dim, coord> load_point(const Mirror& mirror) {
@@ -68,7 +73,7 @@ void count_neighbours_in(const Search<Dim>& search, const OffsetField& number, i
   Kokkos::parallel_for(
       "greenwater::count_neighbours", Range(0, count), KOKKOS_LAMBDA(const int i) {
         std::int64_t n = 0;
-        search.neighbours(i, [&](int, real) { ++n; });
+        search.neighbours(i, [&](int, coord) { ++n; });
         number(i) = n;
       });
 }
@@ -78,9 +83,9 @@ void fill_neighbours_in(const Search<Dim>& search, const Rows& rows, int count) 
   Kokkos::parallel_for(
       "greenwater::fill_neighbours", Range(0, count), KOKKOS_LAMBDA(const int i) {
         auto k = rows.first(i);
-        search.neighbours(i, [&](const int j, const real w) {
+        search.neighbours(i, [&](const int j, const coord r2) {
           rows.index(k) = j;
-          rows.weight(k++) = w;
+          rows.weight(k++) = search.weight_at(r2);
         });
       });
 }
@@ -90,7 +95,7 @@ void count_images_in(const Search<Dim>& search, const OffsetField& number, int c
   Kokkos::parallel_for(
       "greenwater::count_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
         std::int64_t n = 0;
-        search.images(i, [&](int, int, real) { ++n; });
+        search.images(i, [&](int, int, coord) { ++n; });
         number(i) = n;
       });
 }
@@ -100,10 +105,10 @@ void fill_images_in(const Search<Dim>& search, const ImageRows& rows, int count)
   Kokkos::parallel_for(
       "greenwater::fill_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
         auto k = rows.first(i);
-        search.images(i, [&](const int j, const int m, const real w) {
+        search.images(i, [&](const int j, const int m, const coord r2) {
           rows.index(k) = j;
           rows.mirror(k) = m;
-          rows.weight(k++) = w;
+          rows.weight(k++) = search.weight_at(r2);
         });
       });
 }
@@ -154,15 +159,14 @@ void build_in(NeighborRows& rows, const Search<Dim>& search, int count, std::int
 }  // namespace
 
 void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
-                         const Weight& weight) {
+                         const RowOptions& options) {
   mirrors = walls.mirror;
-  const int count = particles.count;
+  const auto build = [&](const auto& search) { build_in(*this, search, particles.count, entries_, image_entries_); };
+  const auto [weight, radius] = options;
   if (particles.dim == 2)
-    build_in<2>(*this, {particles.position, grid.first(), grid.shape(), walls, weight}, count, entries_,
-                image_entries_);
+    build(Search<2>{particles.position, grid.first(), grid.shape(), walls, weight, radius});
   else
-    build_in<3>(*this, {particles.position, grid.first(), grid.shape(), walls, weight}, count, entries_,
-                image_entries_);
+    build(Search<3>{particles.position, grid.first(), grid.shape(), walls, weight, radius});
 }
 
 }  // namespace greenwater

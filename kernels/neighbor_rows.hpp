@@ -57,11 +57,16 @@ struct Around {
   }
 };
 
+struct RowOptions {
+  Weight weight;     // whose values stand beside the entries
+  coord radius = 0;  // of the search: the largest of all weights; at most the grid's cell [m]
+};
+
 class NeighborRows {
  public:
-  /// Finds all neighbours and images within weight.radius of each particle. The particles must have been sorted into
-  /// the grid just before. Capacity grows by itself: rows are counted before they are filled.
-  void build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls, const Weight& weight);
+  /// Finds all neighbours and images within the search radius of each particle. The particles must have been sorted
+  /// into the grid just before. Capacity grows by itself: rows are counted before they are filled.
+  void build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls, const RowOptions& options);
 
   template <int Dim>
   Around<Dim> around(const Particles& particles) const {

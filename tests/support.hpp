@@ -85,7 +85,7 @@ inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const Fl
   fluid.walls = make_mirror_walls(walls, fluid.grid.shape(), options.spacing);
   fluid.particles = particles_at(at, options.dim);
   fluid.grid.sort(fluid.particles);
-  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, weight);
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
   number_density(fluid);
   return fluid;
 }

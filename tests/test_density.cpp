@@ -55,3 +55,23 @@ TEST_CASE("inside a lattice n is n0, at its edge less, and alone 0", "[unit][den
   const Fluid alone = fluid_at({{0, 0, 0}}, {}, options);
   CHECK(by_id(alone, alone.particles.number_density)[0] == 0);
 }
+
+TEST_CASE("each weight has its own radius, and the rows reach as far as the widest", "[unit][density]") {
+  Fluid fluid = fluid_at(lattice(15, 15, 0.1), {}, {.spacing = 0.1, .radius = 3.9});
+  fluid.laplacian.weight.radius = real(0.21);
+  fluid.density.weight.radius = real(0.31);
+  fluid.density.reference = lattice_reference(fluid.density.weight, 2, 0.1);
+  fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
+  number_density(fluid);
+  const auto id = host(fluid.particles.id);
+  const auto first = host(fluid.rows.near.first);
+  const auto weight = host(fluid.rows.near.weight);
+  for (int i = 0; i < fluid.particles.count; ++i) {
+    if (id(i) != 112) continue;            // the middle
+    CHECK(first(i + 1) - first(i) == 44);  // within 3.9 l0
+    int within_laplacian = 0;
+    for (auto k = first(i); k < first(i + 1); ++k) within_laplacian += weight(k) > 0;
+    CHECK(within_laplacian == 12);
+  }
+  CHECK(by_id(fluid, fluid.particles.number_density)[112] == Approx(fluid.density.reference.n0).epsilon(1e-12));
+}
