@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/formula.hpp"
+#include "app/plan.hpp"
 #include "core/check.hpp"
 #include "kernels/density.hpp"
 
@@ -85,9 +86,8 @@ bool inside_plate(const PlateCase& plate, const Point& x) {
 std::vector<Point> lattice(const Scene& scene) {
   const double l0 = scene.mps.spacing;
   const FluidCase& fluid = scene.fluid;
-  // A region that is a whole number of spacings long may fall short of it by round-off.
-  const auto rows = [&](int d) { return static_cast<int>(std::floor((fluid.max[d] - fluid.min[d]) / l0 + 1e-6)); };
-  const int nx = rows(0), ny = rows(1);
+  const auto cells = lattice_cells(fluid, l0, scene.dimension);
+  const int nx = static_cast<int>(cells[0]), ny = static_cast<int>(cells[1]);
   std::vector<Point> points;
   points.reserve(static_cast<std::size_t>(nx) * ny);
   for (int j = 0; j < ny; ++j)

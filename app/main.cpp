@@ -10,6 +10,7 @@
 #include "app/machine.hpp"
 #include "app/plan.hpp"
 #include "app/run.hpp"
+#include "app/simulation.hpp"
 #include "core/kokkos.hpp"
 
 namespace {
@@ -26,8 +27,10 @@ Scene checked_scene(CaseFile& file) {
 int check(const RunOptions& options) {
   CaseFile file(options.case_path, options.case_options);
   const Scene scene = checked_scene(file);
+  const Runtime runtime(options.threads);
+  const Simulation simulation(scene);  // what cannot be built is a wrong case too
   std::cout << "case      " << scene.name << (scene.title.empty() ? "" : ": ") << scene.title << '\n';
-  for (const std::string& line : plan_lines(plan_of(scene), scene)) std::cout << line << '\n';
+  for (const std::string& line : simulation.plan()) std::cout << line << '\n';
   std::cout << "exit 0 (the case is good; nothing was written)\n";
   return 0;
 }

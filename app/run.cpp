@@ -41,14 +41,6 @@ const Scene& with_free_folder(const RunOptions& options, const Scene& scene, Wal
   return scene;
 }
 
-std::string effects_text(const Effects& effects) {
-  std::string text;
-  for (const Stage stage : {Stage::force, Stage::after_predict}) {
-    for (const auto& effect : effects.at(stage)) text += (text.empty() ? "" : ", ") + std::string(effect->name());
-  }
-  return text.empty() ? "none" : text;
-}
-
 class Run {
  public:
   Run(const RunOptions& options, const Scene& scene, const CaseFile& file)
@@ -125,9 +117,7 @@ void Run::say_header() {
                        facts.kokkos_version, facts.kokkos_devices, origin_.backend, origin_.threads, facts.kokkos_arch,
                        facts.kokkos_kernels, facts.flags, host_name()));
   log_.say(fmt::format("units     SI{}", scene_.dimension == 2 ? "; forces and energies are per metre of depth" : ""));
-  for (const std::string& line : plan_lines(plan_, scene_)) log_.say(line);
-  log_.say(fmt::format("walls     {} straight faces", simulation_.wall_segments().size()));
-  log_.say("effects   " + effects_text(simulation_.effects()));
+  for (const std::string& line : simulation_.plan()) log_.say(line);
   for (const std::string& option : origin_.case_options) log_.say("changed   " + option);
   log_.say("output    " + recorder_.folder().path().string());
   log_.say("");

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/plan.hpp"
 #include "core/check.hpp"
 
 namespace greenwater {
@@ -36,6 +37,14 @@ Column vector_column(const std::string& name, const std::string& unit, const Fie
   for (int i = 0; i < count; ++i)
     for (int d = 0; d < dim; ++d) values[static_cast<std::size_t>(i) * dim + d] = host(i, d);
   return {name, unit, dim, std::move(values)};
+}
+
+std::string effects_text(const Effects& effects) {
+  std::string text;
+  for (const Stage stage : {Stage::force, Stage::after_predict}) {
+    for (const auto& effect : effects.at(stage)) text += (text.empty() ? "" : ", ") + std::string(effect->name());
+  }
+  return text.empty() ? "none" : text;
 }
 
 }  // namespace
@@ -142,6 +151,15 @@ Table Simulation::fluid_table() const {
   table.columns.push_back(scalar_column<double>("number_density", "-", p.number_density, p.count));
   table.columns.push_back(scalar_column<std::uint8_t>("surface", "-", p.surface, p.count));
   return table;
+}
+
+std::vector<std::string> Simulation::plan() const {
+  Plan plan = plan_of(scene_);
+  plan.particles = fluid_.particles.count;  // the arithmetic of the plan knows no plates
+  std::vector<std::string> lines = plan_lines(plan, scene_);
+  lines.push_back(text_of("walls     ", walls_.faces.size(), " straight faces"));
+  lines.push_back("effects   " + effects_text(effects_));
+  return lines;
 }
 
 std::vector<std::array<double, 6>> Simulation::wall_segments() const {

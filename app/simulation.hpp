@@ -31,6 +31,9 @@ class Simulation {
   /// id, position, velocity, pressure, number_density and surface of every particle, in the order of the grid.
   Table fluid_table() const;
 
+  /// What the run will be, for people: particles, steps, memory, walls, effects.
+  std::vector<std::string> plan() const;
+
   /// x, y, z of both ends of every wall [m].
   std::vector<std::array<double, 6>> wall_segments() const;
 
