@@ -11,8 +11,8 @@ namespace greenwater {
 /// What happened in a step.
 struct StepReport {
   SolveReport solve;
-  int stopped = 0;  // ways that crossed a wall and were stopped there
-  int retired = 0;  // particles that left the domain
+  int stopped = 0;    // ways that crossed a wall and were stopped there
+  Departed departed;  // particles that left the domain
 };
 
 class Scheme {
@@ -34,6 +34,6 @@ std::unique_ptr<Scheme> make_classic(const ClassicOptions& options);
 
 /// Sorts the particles into the grid and builds their rows; returns how many left the domain. Needed once before the
 /// first step, which starts from rows.
-int settle_rows(Fluid& fluid);
+Departed settle_rows(Fluid& fluid);
 
 }  // namespace greenwater

@@ -4,15 +4,15 @@
 
 namespace greenwater {
 
-int settle_rows(Fluid& fluid) {
-  int retired = 0;
+Departed settle_rows(Fluid& fluid) {
+  Departed departed;
   {
     Region region("sort");
-    retired = fluid.grid.sort(fluid.particles);
+    departed = fluid.grid.sort(fluid.particles);
   }
   Region region("rows");
   fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
-  return retired;
+  return departed;
 }
 
 namespace {
@@ -35,7 +35,7 @@ class Classic : public Scheme {
     effects.run(Stage::after_predict, fluid, dt);
 
     // 2  who is near whom now
-    report.retired = settle_rows(fluid);
+    report.departed = settle_rows(fluid);
 
     // 3  implicit part: the pressure that brings n back to n^0
     number_density(fluid);

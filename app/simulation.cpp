@@ -72,15 +72,18 @@ void Simulation::step() {
 }
 
 void Simulation::look_after(const StepReport& report) {
-  retired_ += report.retired;
+  require<NumericsError>(report.departed.not_a_number == 0, "step ", steps_, ", t = ", time(),
+                         " s: ", report.departed.not_a_number,
+                         " positions are not a number any more; a smaller mps.time_step may help");
+  retired_ += report.departed.outside;
   if (report.stopped > 0)
     note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
-  if (report.retired > 0)
+  if (report.departed.outside > 0)
     note("lost",
          text_of("particles left the domain and were retired; so far ", retired_, " with ",
                  static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
                  scene_.dimension == 2 ? " kg/m" : " kg"),
-         report.retired);
+         report.departed.outside);
   if (report.solve.converged) return;
   const std::string text =
       text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",

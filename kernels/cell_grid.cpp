@@ -8,17 +8,24 @@
 namespace greenwater {
 namespace {
 
-// The cell of each particle, and how many each cell has; those outside go to one more cell at the end.
+// The cell of each particle, and how many each cell has; those outside go to one more cell at the end. Returns how many
+// positions are no numbers.
 template <int Dim>
-void find_cells_in(const Particles& particles, const GridShape& grid, IndexField cell, IndexField number) {
+int find_cells_in(const Particles& particles, const GridShape& grid, IndexField cell, IndexField number) {
   const auto x = Read<CoordField>(particles.position);
-  Kokkos::parallel_for(
-      "greenwater::find_cells", Range(0, particles.count), KOKKOS_LAMBDA(const int i) {
+  int nowhere = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::find_cells", Range(0, particles.count),
+      KOKKOS_LAMBDA(const int i, int& sum) {
         const auto xi = load<Dim>(x, i);
+        const auto zero = difference(xi, xi);  // inf - inf and nan - nan are not
+        sum += dot(zero, zero) == 0 ? 0 : 1;
         const int c = grid.holds(xi) ? grid.cell_of(xi) : grid.count();
         cell(i) = c;
         Kokkos::atomic_fetch_add(&number(c), 1);
-      });
+      },
+      nowhere);
+  return nowhere;
 }
 
 void clear(const IndexField& field) {
@@ -117,7 +124,7 @@ GridShape make_grid(int dim, const std::array<coord, 3>& low, const std::array<c
   return grid;
 }
 
-int CellGrid::sort(Particles& particles) {
+Departed CellGrid::sort(Particles& particles) {
   const int cells = shape_.count() + 1;
   if (static_cast<int>(first_.extent(0)) != cells + 1) {
     first_ = IndexField("greenwater::cell_first", cells + 1);
@@ -128,14 +135,14 @@ int CellGrid::sort(Particles& particles) {
     order_ = uncleared<IndexField>("greenwater::cell_order", particles.id.extent(0));
   }
   clear(fill_);
-  particles.dim == 2 ? find_cells_in<2>(particles, shape_, cell_, fill_)
-                     : find_cells_in<3>(particles, shape_, cell_, fill_);
+  const int nowhere = particles.dim == 2 ? find_cells_in<2>(particles, shape_, cell_, fill_)
+                                         : find_cells_in<3>(particles, shape_, cell_, fill_);
   begin_cells(fill_, first_);
   fill_cells(cell_, fill_, order_, particles.count);
   settle_cells(first_, order_, cells);
   const int before = particles.count;
   reorder_.apply(particles, order_, value_at(first_, cells - 1));
-  return before - particles.count;
+  return {before - particles.count - nowhere, nowhere};
 }
 
 }  // namespace greenwater

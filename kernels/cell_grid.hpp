@@ -60,13 +60,19 @@ KOKKOS_INLINE_FUNCTION void for_each_candidate(const GridShape& grid, const Read
 /// Throws ResourceError when the box would need more cells than can be numbered.
 GridShape make_grid(int dim, const std::array<coord, 3>& low, const std::array<coord, 3>& high, coord radius);
 
+/// Who left in a sort.
+struct Departed {
+  int outside = 0;       // beyond the grid
+  int not_a_number = 0;  // nowhere: a coordinate is inf or nan
+};
+
 /// Particles in cell order, made anew every step by a stable counting sort: the same order at any number of threads.
 class CellGrid {
  public:
   explicit CellGrid(const GridShape& shape = {}) : shape_(shape) {}
 
-  /// Sorts all fields of the particles by cell. Those outside the grid leave; their number is returned.
-  int sort(Particles& particles);
+  /// Sorts all fields of the particles by cell. Those that are not in the grid leave.
+  Departed sort(Particles& particles);
 
   const GridShape& shape() const { return shape_; }
   /// Particles of cell c are first(c) ... first(c + 1) - 1.

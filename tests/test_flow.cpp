@@ -240,3 +240,8 @@ TEST_CASE("initial velocity and body force may be formulas", "[unit][run]") {
   const auto force = by_id(simulation.fluid(), Kokkos::subview(p.extras[0].values, Kokkos::ALL(), 0));
   for (std::size_t i = 0; i < start.size(); ++i) CHECK(force[i] == Approx(3 * start[i]));
 }
+
+TEST_CASE("a velocity that is no number ends the run and is not taken for a departure", "[unit][run]") {
+  Simulation simulation(scene_of("dam_break_rigid/quick.toml", {"fluid.0.velocity=[\"x > 0.1 ? 0/0 : 0\", 0]"}));
+  CHECK_THROWS_AS(simulation.step(), NumericsError);
+}

@@ -121,7 +121,7 @@ TEST_CASE("sorting carries all fields along", "[unit][neighbors]") {
   Kokkos::deep_copy(p.extras[extra].values, tracer);
   Kokkos::deep_copy(p.pressure, pressure);
   CellGrid grid(make_grid(3, {0, 0, 0}, {1, 1, 1}, 0.13));
-  REQUIRE(grid.sort(p) == 0);
+  REQUIRE(grid.sort(p).outside == 0);
   const auto id = host(p.id);
   const auto x = host(p.position), sorted_u = host(p.velocity), sorted_tracer = host(p.extras[extra].values);
   const auto sorted_pressure = host(p.pressure);
@@ -143,7 +143,9 @@ TEST_CASE("particles outside the domain, or nowhere, leave", "[unit][neighbors]"
   at[99] = {INFINITY, 0.5, 0};
   Particles p = particles_at(at, 2);
   CellGrid grid(make_grid(2, {0, 0, 0}, {1, 1, 0}, 0.1));
-  CHECK(grid.sort(p) == 4);
+  const Departed departed = grid.sort(p);
+  CHECK(departed.outside == 2);
+  CHECK(departed.not_a_number == 2);
   CHECK(p.count == 96);
   const auto id = host(p.id);
   for (int i = 0; i < p.count; ++i) CHECK((id(i) != 7 && id(i) != 20 && id(i) != 50 && id(i) != 99));
