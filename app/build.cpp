@@ -215,6 +215,7 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
   Fluid fluid;
   fluid.spacing = scene.mps.spacing;
   fluid.rho = static_cast<real>(scene.fluid.density);
+  fluid.keep_weights = scene.mps.pressure.weights == "kept";
   for (int d = 0; d < 3; ++d) fluid.gravity[d] = static_cast<real>(scene.gravity[d]);
   fluid.density = build_kernel(scene, scene.mps.radius_density);
   fluid.gradient = build_kernel(scene, scene.mps.radius_gradient);
@@ -249,7 +250,6 @@ std::unique_ptr<Scheme> build_scheme(const Scene& scene) {
   options.pressure.source_factor = static_cast<real>(mps.relaxation_factor);
   options.pressure.compressibility = static_cast<real>(mps.compressibility);
   options.pressure.source = mps.pressure.source == "density" ? PressureSource::density : PressureSource::divergence;
-  options.pressure.keep_weights = mps.pressure.weights == "kept";
   options.cg = {static_cast<real>(mps.pressure.tolerance), static_cast<real>(mps.pressure.absolute_tolerance),
                 mps.pressure.max_iterations};
   options.jacobi = mps.pressure.preconditioner == "jacobi";

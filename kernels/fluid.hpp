@@ -22,6 +22,7 @@ struct Fluid {
   Kernel density;               // of n
   Kernel gradient;              // of grad p and div u
   Kernel laplacian;             // of the pressure operator and of viscosity
+  bool keep_weights = true;     // beside the rows; false: computed from the positions each time
   coord spacing = 0;            // l0 [m]
   real rho = 1000;              // [kg/m^3]
   real gravity[3] = {0, 0, 0};  // g [m/s^2]
@@ -33,7 +34,7 @@ struct Fluid {
 inline RowOptions row_options(const Fluid& fluid) {
   const real widest =
       larger(larger(fluid.density.weight.radius, fluid.gradient.weight.radius), fluid.laplacian.weight.radius);
-  return {fluid.laplacian.weight, widest};
+  return {fluid.laplacian.weight, widest, fluid.keep_weights};
 }
 
 /// Device view of all that drives a particle beside pressure: g, and a body force where a scene names one.

@@ -80,12 +80,14 @@ void count_neighbours_in(const Search<Dim>& search, const OffsetField& number, i
 
 template <int Dim>
 void fill_neighbours_in(const Search<Dim>& search, const Rows& rows, int count) {
+  const bool keep = rows.weight.extent(0) > 0;
   Kokkos::parallel_for(
       "greenwater::fill_neighbours", Range(0, count), KOKKOS_LAMBDA(const int i) {
         auto k = rows.first(i);
         search.neighbours(i, [&](const int j, const coord r2) {
           rows.index(k) = j;
-          rows.weight(k++) = search.weight_at(r2);
+          if (keep) rows.weight(k) = search.weight_at(r2);
+          ++k;
         });
       });
 }
@@ -102,13 +104,15 @@ void count_images_in(const Search<Dim>& search, const OffsetField& number, int c
 
 template <int Dim>
 void fill_images_in(const Search<Dim>& search, const ImageRows& rows, int count) {
+  const bool keep = rows.weight.extent(0) > 0;
   Kokkos::parallel_for(
       "greenwater::fill_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
         auto k = rows.first(i);
         search.images(i, [&](const int j, const int m, const coord r2) {
           rows.index(k) = j;
           rows.mirror(k) = m;
-          rows.weight(k++) = search.weight_at(r2);
+          if (keep) rows.weight(k) = search.weight_at(r2);
+          ++k;
         });
       });
 }
@@ -135,23 +139,23 @@ void grow_first(OffsetField& first, int count) {
 std::int64_t roomy(std::int64_t entries) { return entries + entries / 4 + 64; }
 
 template <int Dim>
-void build_in(NeighborRows& rows, const Search<Dim>& search, int count, std::int64_t& near, std::int64_t& image) {
+void build_in(NeighborRows& rows, const Search<Dim>& search, bool keep, int count) {
   grow_first(rows.near.first, count);
   count_neighbours_in(search, rows.near.first, count);
-  near = begin_rows(rows.near.first, count);
+  const std::int64_t near = rows.near.entries = begin_rows(rows.near.first, count);
   if (static_cast<std::int64_t>(rows.near.index.extent(0)) < near) {
     rows.near.index = uncleared<IndexField>("greenwater::row_index", roomy(near));
-    rows.near.weight = uncleared<ScalarField>("greenwater::row_weight", roomy(near));
+    if (keep) rows.near.weight = uncleared<ScalarField>("greenwater::row_weight", roomy(near));
   }
   fill_neighbours_in(search, rows.near, count);
   if (search.walls.count == 0) return;
   grow_first(rows.images.first, count);
   count_images_in(search, rows.images.first, count);
-  image = begin_rows(rows.images.first, count);
+  const std::int64_t image = rows.images.entries = begin_rows(rows.images.first, count);
   if (static_cast<std::int64_t>(rows.images.index.extent(0)) < image) {
     rows.images.index = uncleared<IndexField>("greenwater::image_index", roomy(image));
     rows.images.mirror = uncleared<IndexField>("greenwater::image_mirror", roomy(image));
-    rows.images.weight = uncleared<ScalarField>("greenwater::image_weight", roomy(image));
+    if (keep) rows.images.weight = uncleared<ScalarField>("greenwater::image_weight", roomy(image));
   }
   fill_images_in(search, rows.images, count);
 }
@@ -161,12 +165,11 @@ void build_in(NeighborRows& rows, const Search<Dim>& search, int count, std::int
 void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
                          const RowOptions& options) {
   mirrors = walls.mirror;
-  const auto build = [&](const auto& search) { build_in(*this, search, particles.count, entries_, image_entries_); };
-  const auto [weight, radius] = options;
+  const auto build = [&](const auto& search) { build_in(*this, search, options.keep_weights, particles.count); };
   if (particles.dim == 2)
-    build(Search<2>{particles.position, grid.first(), grid.shape(), walls, weight, radius});
+    build(Search<2>{particles.position, grid.first(), grid.shape(), walls, options.weight, options.radius});
   else
-    build(Search<3>{particles.position, grid.first(), grid.shape(), walls, weight, radius});
+    build(Search<3>{particles.position, grid.first(), grid.shape(), walls, options.weight, options.radius});
 }
 
 }  // namespace greenwater

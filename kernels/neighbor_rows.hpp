@@ -11,13 +11,15 @@ namespace greenwater {
 
 /// Compressed rows: the entries of particle i are first(i) ... first(i + 1) - 1.
 struct Rows {
+  std::int64_t entries = 0;
   OffsetField first;
   IndexField index;    // neighbour j
-  ScalarField weight;  // w of the Laplacian's radius, at the positions of the last build [-]
+  ScalarField weight;  // w of the Laplacian's radius, at the positions of the last build [-]; empty when not kept
 };
 
 /// Rows of images: entry k is the image of index(k) in mirror number mirror(k). A particle may be its own neighbour here.
 struct ImageRows {
+  std::int64_t entries = 0;
   OffsetField first;
   IndexField index;
   IndexField mirror;
@@ -58,8 +60,9 @@ struct Around {
 };
 
 struct RowOptions {
-  Weight weight;     // whose values stand beside the entries
-  coord radius = 0;  // of the search: the largest of all weights; at most the grid's cell [m]
+  Weight weight;             // whose values stand beside the entries
+  coord radius = 0;          // of the search: the largest of all weights; at most the grid's cell [m]
+  bool keep_weights = true;  // false: whoever needs a weight computes it; a third of the memory
 };
 
 class NeighborRows {
@@ -73,15 +76,9 @@ class NeighborRows {
     return {particles.position, near.first, images.first, near.index, images.index, images.mirror, mirrors};
   }
 
-  std::int64_t entries() const { return entries_; }
-  std::int64_t image_entries() const { return image_entries_; }
-
   Rows near;
   ImageRows images;  // without walls: never allocated
   Kokkos::View<const Mirror*, Device> mirrors;
-
- private:
-  std::int64_t entries_ = 0, image_entries_ = 0;
 };
 
 }  // namespace greenwater

@@ -116,7 +116,7 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
 
 void PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);
-  if (options_.keep_weights)
+  if (fluid_->keep_weights)
     apply_kept(*fluid_, K, diagonal_, p, Ap);
   else
     fluid_->particles.dim == 2 ? apply_recomputed_in<2>(*fluid_, K, diagonal_, p, Ap)

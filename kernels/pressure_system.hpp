@@ -12,7 +12,6 @@ struct PressureOptions {
   real source_factor = 1;    // gamma  multiplies the density source (the paper's Table 2: 1.0)
   real compressibility = 0;  // alpha_c [1/Pa]; adds rho alpha_c / dt^2 to the diagonal
   PressureSource source = PressureSource::density;
-  bool keep_weights = true;  // false: computed from the positions each time, a third of the memory
 };
 
 /// (A p)_i = K (C p_i sum_j w_ij - sum_j w_ij p_j) + (rho alpha_c / dt^2) p_i,  K = 2 d / (lambda n^0); j runs over

@@ -92,7 +92,7 @@ TEST_CASE("two thousand particles in one cell all see each other", "[unit][neigh
   FluidOptions options;
   options.spacing = 0.1;
   const Fluid fluid = fluid_at(in_one_cell(2000, 2), {}, options);
-  CHECK(fluid.rows.entries() == 2000LL * 1999);
+  CHECK(fluid.rows.near.entries == 2000LL * 1999);
 }
 
 TEST_CASE("sorting is stable and by cell", "[unit][neighbors]") {

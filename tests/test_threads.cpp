@@ -26,11 +26,11 @@ std::uint64_t fingerprint(const Fluid& fluid) {
   std::uint64_t hash = 1469598103934665603ULL;
   add_to(hash, fluid.particles.id, fluid.particles.count);
   add_to(hash, fluid.rows.near.first, fluid.particles.count + 1);
-  add_to(hash, fluid.rows.near.index, fluid.rows.entries());
-  add_to(hash, fluid.rows.near.weight, fluid.rows.entries());
-  if (fluid.rows.image_entries() > 0) {
-    add_to(hash, fluid.rows.images.index, fluid.rows.image_entries());
-    add_to(hash, fluid.rows.images.mirror, fluid.rows.image_entries());
+  add_to(hash, fluid.rows.near.index, fluid.rows.near.entries);
+  add_to(hash, fluid.rows.near.weight, fluid.rows.near.entries);
+  if (fluid.rows.images.entries > 0) {
+    add_to(hash, fluid.rows.images.index, fluid.rows.images.entries);
+    add_to(hash, fluid.rows.images.mirror, fluid.rows.images.entries);
   }
   add_to(hash, fluid.particles.number_density, fluid.particles.count);
   return hash;

@@ -91,18 +91,18 @@ TEST_CASE("n = n0 round a thick plate, but for its corners", "[unit][walls]") {
 TEST_CASE("nothing is seen through a plate, and round its free end it is", "[unit][walls]") {
   const auto plate = walls_of({segment(1, 0, 1, 1)});
   const Positions low{{0.95, 0.5, 0}, {1.05, 0.5, 0}}, high{{0.95, 1.05, 0}, {1.05, 1.05, 0}};
-  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.entries() == 0);
-  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.image_entries() == 2);  // each its own image
-  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.entries() == 2);
-  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.image_entries() == 0);
+  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.near.entries == 0);
+  CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.images.entries == 2);  // each its own image
+  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.near.entries == 2);
+  CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.images.entries == 0);
 }
 
 TEST_CASE("an image by way of the floor is not seen through a plate that stands on it", "[unit][walls]") {
   // Mirror twins beside the foot: the way by the floor meets the plate exactly at its foot.
   const auto walls = walls_of({segment(0, 0, 2, 0), segment(1, 0, 1, 1)});
   const Fluid fluid = fluid_at({{0.95, 0.05, 0}, {1.05, 0.05, 0}}, walls, options_with(3.1, 0));
-  CHECK(fluid.rows.entries() == 0);
-  CHECK(fluid.rows.image_entries() == 2 * 3);  // each its own image in floor, plate and corner
+  CHECK(fluid.rows.near.entries == 0);
+  CHECK(fluid.rows.images.entries == 2 * 3);  // each its own image in floor, plate and corner
 }
 
 TEST_CASE("sight is mutual to the last bit", "[unit][walls]") {
