@@ -67,7 +67,7 @@ void Simulation::step() {
   Region region("step");
   last_ = scheme_->step(fluid_, effects_, static_cast<real>(dt()));
   ++steps_;
-  fluid_.time = static_cast<real>(steps_ * dt());
+  fluid_.time = static_cast<accum>(steps_) * dt();
   look_after(last_);
 }
 

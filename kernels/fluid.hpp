@@ -26,7 +26,7 @@ struct Fluid {
   coord spacing = 0;            // l0 [m]
   real rho = 1000;              // [kg/m^3]
   real gravity[3] = {0, 0, 0};  // g [m/s^2]
-  real time = 0;                // t at the start of the step [s]
+  accum time = 0;               // t at the start of the step [s]
   int body_force = -1;          // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
 };
 
