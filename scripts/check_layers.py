@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that the folders include each other only as agreed, and that Kokkos stays where it belongs.
+"""Checks that the folders include each other only as agreed, that Kokkos stays where it belongs, and that no kernel
+reaches through `this`.
 
 Prints file:line for each breach; exit code 1 if there is any.
 """
@@ -20,7 +21,13 @@ ALLOWED = {
 }
 ALLOWED["tests"] = ALLOWED["bench"] = set(ALLOWED)
 WITHOUT_KOKKOS = ("io", "fem")
+WITH_KERNELS = ("core", "kernels", "coupling")
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
+
+# Where a lambda begins that may capture `this`, up to its body; and a member in the body, by the underscore at its end.
+LAMBDA = re.compile(r"(?:\bKOKKOS_(?:CLASS_)?LAMBDA\b|\[\s*(?:=|(?:=\s*,\s*)?\*?\s*this)\s*\])[^{;]*\{")
+MEMBER = re.compile(r"\bthis\b|(?<!->)(?<!\.)(?<!::)\b[a-z]\w*_\b")
+TEXT = re.compile(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'')
 
 
 def code_lines(path):
@@ -37,6 +44,21 @@ def brings_kokkos(header, seen):
     seen.add(header)
     found = [m[2] for m in map(INCLUDE.match, code_lines(path)) if m]
     return any(name.startswith("Kokkos") for name in found) or any(brings_kokkos(name, seen) for name in found)
+
+
+def kernels_with_this(path):
+    """Where the body of a kernel names `this` or a member, which on a device is an address of the host's."""
+    code = TEXT.sub(lambda m: " " * len(m[0]), "\n".join(code_lines(path)))
+    end = 0
+    for start in LAMBDA.finditer(code):
+        if start.end() <= end:
+            continue  # inside the one before, and looked at with it
+        depth, end = 1, start.end()
+        while depth and end < len(code):
+            depth += {"{": 1, "}": -1}.get(code[end], 0)
+            end += 1
+        for use in MEMBER.finditer(code, start.end(), end):
+            yield code.count("\n", 0, use.start()) + 1, use[0]
 
 
 def breaches(path):
@@ -58,6 +80,9 @@ def breaches(path):
             yield number, "only core/kokkos.hpp may use Kokkos::Experimental, which changes between versions"
         if "Kokkos::Tools::Experimental" in line and folder not in ("core", "tests"):
             yield number, "only core/ and tests/ may use Kokkos::Tools::Experimental"
+    if folder in WITH_KERNELS:
+        for number, member in kernels_with_this(path):
+            yield number, f"a kernel must not reach through this ({member}): copy what it needs into a local before it"
 
 
 def main():

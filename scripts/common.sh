@@ -28,6 +28,86 @@ cache_dir() {
   fi
 }
 
+# Makes the cache and keeps everybody else from adding to it; sets $cache. Two set-ups at once must not build the same
+# thing twice; the second waits and finds it done.
+lock_cache() {
+  cache=$(cache_dir)
+  mkdir -p "$cache" || die "cannot make $cache; choose another folder with GREENWATER_CACHE."
+  # In the fall-back place below /var/tmp anybody could have made the folder; never use another user's.
+  case $cache in
+    /var/tmp/*) [ -O "$cache" ] || die "$cache belongs to another user; choose a folder with GREENWATER_CACHE." ;;
+  esac
+  exec 9>"$cache/.lock"
+  flock 9
+}
+
+# Sets $work to an empty folder in the locked cache, which disappears with us, or with end_work.
+begin_work() {
+  # Left over from a set-up that was killed; we hold the lock, so nobody works in it.
+  rm -rf "$cache"/.build.*
+  work=$cache/.build.$$
+  mkdir "$work"
+  trap 'rm -rf "$work"' EXIT
+  trap 'exit 130' INT TERM HUP
+}
+
+# Removes $work and gives the cache back.
+end_work() {
+  rm -rf "$work"
+  trap - EXIT INT TERM HUP
+  exec 9>&-
+}
+
+# The mirrors this machine takes Debian from, best first: repositories that call themselves Debian, then those whose
+# index has not been fetched yet and that therefore have no label.
+debian_mirrors() {
+  if [ -n "${GREENWATER_DEBIAN_MIRROR:-}" ]; then
+    printf '%s\n' "$GREENWATER_DEBIAN_MIRROR"
+    return
+  fi
+  apt-get indextargets --format '$(LABEL)|$(RELEASE)|$(COMPONENT)|$(REPO_URI)' 2>/dev/null |
+    awk -F'|' '$3 == "main" && $2 !~ /-/ && $1 == "Debian" { print 1, $4 }
+               $3 == "main" && $2 !~ /-/ && $1 !~ /^Debian/ { print 2, $4 }' | sort -u | cut -d' ' -f2- | awk '!seen[$0]++'
+}
+
+# Fetches from a suite of Debian with apt, which checks against Debian's signature, into the folder's download/. Only our
+# own index folder and source list are used: the machine's /etc/apt is read (proxy, credentials, keys) but nothing of
+# apt's state is touched. Shows apt's words when it fails.
+fetch_from_debian() { # folder deb|deb-src suite apt-get-arguments...
+  local dir=$1 kind=$2 suite=$3 mirror keyring signed=
+  shift 3
+  mkdir -p "$dir/lists/partial" "$dir/cache/archives/partial" "$dir/download"
+  for keyring in /usr/share/keyrings/debian-archive-keyring.{gpg,pgp}; do
+    if [ -f "$keyring" ]; then signed="[signed-by=$keyring] " && break; fi
+  done
+  cat >"$dir/apt.conf" <<END
+Dir::Etc::SourceList "$dir/sources.list";
+Dir::Etc::SourceParts "-";
+Dir::State::Lists "$dir/lists";
+Dir::Cache "$dir/cache";
+// The machine's own apt may have hooks that clean up or announce after an update; this is not one of its updates.
+#clear APT::Update::Pre-Invoke;
+#clear APT::Update::Post-Invoke;
+#clear APT::Update::Post-Invoke-Success;
+// As root apt would download as user _apt, who cannot write into our folder.
+APT::Sandbox::User "root";
+APT::Get::List-Cleanup "false";
+Acquire::Languages "none";
+Acquire::Retries "3";
+Acquire::http::Timeout "60";
+END
+  : >"$dir/log"
+  while read -r mirror; do
+    printf '%s %s%s %s main\n' "$kind" "$signed" "$mirror" "$suite" >"$dir/sources.list"
+    if apt-get -c "$dir/apt.conf" update -qq --error-on=any >>"$dir/log" 2>&1 </dev/null &&
+      (cd "$dir/download" && apt-get -c "$dir/apt.conf" "$@") >>"$dir/log" 2>&1 </dev/null; then
+      return 0
+    fi
+  done < <(debian_mirrors)
+  cat "$dir/log" >&2
+  return 1
+}
+
 # The value of one variable in the CMake cache of a build folder; empty when there is none.
 cmake_cache_value() { # build-folder variable
   if [ -f "$1/CMakeCache.txt" ]; then
