@@ -2,56 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 
 namespace greenwater {
 namespace {
 
-struct Line {  // a face as a stretch of its line
-  std::array<coord, 2> direction;
-  coord length;
-};
+using Place = std::array<coord, 3>;
 
-Line line_of(const WallFace& face) {
-  const coord x = face.end[1][0] - face.end[0][0], y = face.end[1][1] - face.end[0][1];
-  const coord length = std::hypot(x, y);
-  return {{x / length, y / length}, length};
+Place minus(const Place& a, const Place& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+coord dot(const Place& a, const Place& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Place cross(const Place& a, const Place& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// Takes `other` into `face` when both lie on one line, touch and move alike.
-bool absorb(WallFace& face, const WallFace& other, coord tolerance) {
-  if (face.velocity != other.velocity || face.acceleration != other.acceleration) return false;
-  const Line line = line_of(face);
-  std::array<coord, 2> place{};
-  for (int e = 0; e < 2; ++e) {
-    const coord x = other.end[e][0] - face.end[0][0], y = other.end[e][1] - face.end[0][1];
-    if (std::fabs(x * line.direction[1] - y * line.direction[0]) > tolerance) return false;
-    place[e] = x * line.direction[0] + y * line.direction[1];
-  }
-  const auto [low, high] = std::minmax(place[0], place[1]);
-  if (low > line.length + tolerance || high < -tolerance) return false;
-  if (line_of(other).length > line.length) face.body = other.body;
-  const auto start = face.end[0];
-  const coord from = std::min(low, coord(0)), to = std::max(high, line.length);
-  for (int d = 0; d < 2; ++d) {
-    face.end[0][d] = start[d] + from * line.direction[d];
-    face.end[1][d] = start[d] + to * line.direction[d];
-  }
-  return true;
+coord distance_to_segment(const Place& a, const Place& b, const Place& x) {
+  const Place along = minus(b, a), from = minus(x, a);
+  const coord s = std::clamp(dot(from, along) / dot(along, along), 0.0, 1.0);
+  const Place rest = minus(from, {s * along[0], s * along[1], s * along[2]});
+  return std::sqrt(dot(rest, rest));
 }
 
 }  // namespace
 
-void merge_collinear(WallFaces& walls, coord tolerance) {
-  auto& faces = walls.faces;
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (std::size_t j = i + 1; j < faces.size();)
-      if (absorb(faces[i], faces[j], tolerance)) {
-        faces.erase(faces.begin() + static_cast<std::ptrdiff_t>(j));
-        j = i + 1;  // the longer face may touch one that was passed
-      } else {
-        ++j;
-      }
+Place face_normal(const FaceCorners& c, int dim) {
+  const Place a = minus(c[1], c[0]);
+  Place n = dim == 2 ? Place{-a[1], a[0], 0} : cross(a, minus(c[2], c[0]));
+  const coord length = std::sqrt(dot(n, n));
+  for (coord& component : n) component /= length;
+  return n;
+}
+
+coord distance_to_face(const FaceCorners& c, int dim, const Place& x) {
+  if (dim == 2) return distance_to_segment(c[0], c[1], x);
+  const Place n = face_normal(c, 3);
+  bool above = true;
+  coord to_edge = distance_to_segment(c[2], c[0], x);
+  for (int e = 0; e < 3; ++e) {
+    const Place &from = c[e], &to = c[(e + 1) % 3];
+    above = above && dot(cross(n, minus(to, from)), minus(x, from)) >= 0;
+    to_edge = std::min(to_edge, distance_to_segment(from, to, x));
+  }
+  return above ? std::fabs(dot(n, minus(x, c[0]))) : to_edge;
+}
+
+FaceCorners corners_of(const WallFace& face) {
+  return {face.corner[0].position, face.corner[1].position, face.corner[2].position};
 }
 
 }  // namespace greenwater

@@ -1,5 +1,5 @@
 #pragma once
-// Walls as faces, on the host: straight segments in 2-D. Fluid may be on either side of a face, or on both.
+// Walls on the host: straight segments in 2-D, triangles in 3-D. Fluid may be on either side of a wall, or on both.
 
 #include <array>
 #include <string>
@@ -9,20 +9,37 @@
 
 namespace greenwater {
 
+/// A corner of a wall: where it is now and how it moves.
+struct WallPoint {
+  std::array<coord, 3> position{};      // [m]; z = 0 in 2-D
+  std::array<coord, 3> velocity{};      // mean over the step that led here [m/s]
+  std::array<coord, 3> acceleration{};  // [m/s^2]
+};
+
 struct WallFace {
-  std::array<std::array<coord, 3>, 2> end;  // end points [m]; z = 0 in 2-D
-  std::array<coord, 3> velocity{};          // of the whole face over the step [m/s]
-  std::array<coord, 3> acceleration{};      // [m/s^2]
-  int body = 0;                             // which named geometry it belongs to
+  std::array<WallPoint, 3> corner;  // 2-D: a segment from the first to the second
+  int body = 0;                     // which named geometry it belongs to
+};
+
+struct WallBody {
+  std::string name;      // as in the case file
+  bool no_slip = false;  // viscous fluid sticks to it
 };
 
 struct WallFaces {
+  int dim = 2;
   std::vector<WallFace> faces;
-  std::vector<std::string> bodies;  // names of the geometries, as in the case file
+  std::vector<WallBody> bodies;
 };
 
-/// Faces on one line that touch or overlap become one, so that nobody has two images there (only faces of equal motion;
-/// the longer piece gives the body's name). `tolerance` is a length [m] far below the particle distance.
-void merge_collinear(WallFaces& walls, coord tolerance);
+/// Two corners in 2-D, three in 3-D [m].
+using FaceCorners = std::array<std::array<coord, 3>, 3>;
+FaceCorners corners_of(const WallFace& face);
+
+/// Unit normal: to the left of the segment, or by the right-hand rule of the triangle.
+std::array<coord, 3> face_normal(const FaceCorners& corner, int dim);
+
+/// Distance of a point to the nearest point of the segment or triangle [m].
+coord distance_to_face(const FaceCorners& corner, int dim, const std::array<coord, 3>& x);
 
 }  // namespace greenwater
