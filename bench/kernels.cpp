@@ -25,10 +25,11 @@ constexpr int rounds = 15;
 
 WallFaces tank() {
   WallFaces walls;
-  walls.bodies = {"tank", "plate"};
+  walls.bodies = {{"tank"}, {"plate"}};
   const auto add = [&](coord x0, coord y0, coord x1, coord y1, int body) {
     WallFace face;
-    face.end = {{{x0, y0, 0}, {x1, y1, 0}}};
+    face.corner[0].position = {x0, y0, 0};
+    face.corner[1].position = {x1, y1, 0};
     face.body = body;
     walls.faces.push_back(face);
   };
@@ -48,7 +49,8 @@ Fluid column(coord l0) {
   fluid.density = {weight, lattice_reference(weight, 2, l0)};
   fluid.gradient = fluid.laplacian = fluid.density;
   fluid.grid = CellGrid(make_grid(2, {-0.1, -0.1, 0}, {0.9, 0.9, 0}, weight.radius));
-  fluid.walls = make_mirror_walls(tank(), fluid.grid.shape(), l0);
+  fluid.faces = tank();
+  make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), l0);
   fluid.particles = make_particles(2, nx * ny);
   const auto x = Kokkos::create_mirror(fluid.particles.position);
   std::srand(1);

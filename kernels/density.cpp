@@ -7,12 +7,13 @@ namespace {
 
 template <int Dim>
 void number_density_in(const Fluid& fluid, const ScalarField& n) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto w = fluid.density.weight;
   Kokkos::parallel_for(
       "greenwater::number_density", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         real sum = 0;
-        around.for_each(i, [&](int, const Vec<Dim>& r, const Mirror*) { sum += w(sqrt(dot(r, r))); });
+        near.for_each(
+            i, [&](int, const Vec<Dim>& r, const Image<Dim>& image) { sum += image.share * w(sqrt(dot(r, r))); });
         n(i) = sum;
       });
 }

@@ -16,7 +16,8 @@ struct Kernel {
 
 struct Fluid {
   Particles particles;
-  MirrorWalls walls;
+  WallFaces faces;              // walls as they stand now, on the host ...
+  MirrorWalls walls;            // ... and made of them, on the device
   CellGrid grid;                // the particles are in its order since the last sort
   NeighborRows rows;            // with the weight of the Laplacian beside each entry
   Kernel density;               // of n
@@ -29,6 +30,12 @@ struct Fluid {
   accum time = 0;               // t at the start of the step [s]
   int body_force = -1;          // place in particles.extras of a force per mass beside gravity [m/s^2], or -1
 };
+
+/// Device view of who is around whom, at the places of now.
+template <int Dim>
+Around<Dim> around(const Fluid& fluid) {
+  return fluid.rows.around<Dim>(fluid.particles, fluid.walls);
+}
 
 /// What the rows of a fluid are made with.
 inline RowOptions row_options(const Fluid& fluid) {
@@ -57,16 +64,6 @@ Drive<Dim> drive_of(const Fluid& fluid) {
   return {{fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]},
           extra ? Read<VectorField>(fluid.particles.extras[fluid.body_force].values) : Read<VectorField>(),
           extra};
-}
-
-/// What the pressure of an image is above that of its particle, per density: (g - a_w) . (x_img - x_j). It belongs to
-/// gradients, loads and probes; never to the pressure rows, whose source carries gravity and the wall's motion already.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION real image_offset(const Mirror& m, const Vec<Dim>& g, const Vec<Dim, coord>& x) {
-  const auto image = image_position(m, x);
-  real sum = 0;
-  for (int d = 0; d < Dim; ++d) sum += (g[d] - m.acceleration[d]) * static_cast<real>(image[d] - x[d]);
-  return sum;
 }
 
 }  // namespace greenwater

@@ -2,130 +2,107 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
-#include "core/check.hpp"
+#include "kernels/wall_panels.hpp"
 
 namespace greenwater {
 namespace {
 
-constexpr coord right_angle = 1e-9;  // cosine below which two faces meet at a right angle
-
-// x' = x - 2 ((x - x_w) . n) n
-Mirror mirror_of(const WallFace& wall) {
-  Mirror m{};
-  const coord x = wall.end[1][0] - wall.end[0][0], y = wall.end[1][1] - wall.end[0][1];
-  const coord length = std::hypot(x, y);
-  m.normal[0] = -y / length;
-  m.normal[1] = x / length;
-  for (int e = 0; e < 2; ++e)
-    for (int d = 0; d < 3; ++d) m.end[e][d] = wall.end[e][d];
-  coord foot = 0, speed = 0, acceleration = 0;  // normal components of the wall's place and motion
-  for (int d = 0; d < 3; ++d) {
-    foot += m.normal[d] * wall.end[0][d];
-    speed += m.normal[d] * wall.velocity[d];
-    acceleration += m.normal[d] * wall.acceleration[d];
-  }
-  for (int d = 0; d < 3; ++d) {
-    for (int e = 0; e < 3; ++e) m.map[d][e] = (d == e ? 1 : 0) - 2 * m.normal[d] * m.normal[e];
-    m.shift[d] = 2 * foot * m.normal[d];
-    m.velocity[d] = static_cast<real>(2 * speed * m.normal[d]);
-    m.acceleration[d] = static_cast<real>(acceleration * m.normal[d]);
-  }
-  m.face[0] = m.face[1] = -1;
-  m.body = wall.body;
-  return m;
+// Memory is only ever grown, so that walls that move allocate nothing.
+template <class View, class T>
+void upload(View& to, const std::string& label, const std::vector<T>& from) {
+  if (from.empty()) return;
+  if (to.extent(0) < from.size()) to = uncleared<View>(label, from.size() + from.size() / 4);
+  Kokkos::deep_copy(Kokkos::subview(to, std::pair<std::size_t, std::size_t>(0, from.size())),
+                    Kokkos::View<const T*, Kokkos::HostSpace>(from.data(), from.size()));
 }
 
-coord cosine(const Mirror& f, const Mirror& g) { return f.normal[0] * g.normal[0] + f.normal[1] * g.normal[1]; }
-
-coord distance_to_face(const Mirror& m, coord x, coord y) {
-  const coord tx = m.end[1][0] - m.end[0][0], ty = m.end[1][1] - m.end[0][1];
-  const coord s = std::clamp(((x - m.end[0][0]) * tx + (y - m.end[0][1]) * ty) / (tx * tx + ty * ty), 0.0, 1.0);
-  return std::hypot(x - m.end[0][0] - s * tx, y - m.end[0][1] - s * ty);
+std::array<coord, 3> centre_of(const GridShape& grid, const std::array<int, 3>& cell, int dim) {
+  std::array<coord, 3> x{};
+  for (int d = 0; d < dim; ++d) x[d] = grid.origin[d] + (cell[d] + 0.5) * grid.cell;
+  return x;
 }
 
-// An end of one face on the other: they touch there.
-bool touch(const Mirror& f, const Mirror& g, coord tolerance) {
-  for (int e = 0; e < 2; ++e)
-    if (distance_to_face(g, f.end[e][0], f.end[e][1]) < tolerance ||
-        distance_to_face(f, g.end[e][0], g.end[e][1]) < tolerance)
-      return true;
-  return false;
-}
-
-// Both reflections in turn; at a right angle their order does not matter.
-Mirror corner_of(const std::vector<Mirror>& faces, int i, int j) {
-  const Mirror &f = faces[i], &g = faces[j];
-  Mirror m{};
-  for (int d = 0; d < 3; ++d) {
-    m.shift[d] = f.shift[d] + g.shift[d];
-    for (int e = 0; e < 3; ++e) m.map[d][e] = f.map[d][e] + g.map[d][e] - (d == e ? 1 : 0);
-    m.velocity[d] = f.velocity[d] + g.velocity[d];
-    m.acceleration[d] = f.acceleration[d] + g.acceleration[d];
-    m.end[0][d] = m.end[1][d] = (f.shift[d] + g.shift[d]) / 2;  // foot points of the origin, at a right angle
-  }
-  m.face[0] = i;
-  m.face[1] = j;
-  m.body = -1;
-  return m;
-}
-
-std::vector<Mirror> all_mirrors(const WallFaces& walls, coord tolerance) {
-  std::vector<Mirror> mirrors;
-  for (const WallFace& wall : walls.faces) mirrors.push_back(mirror_of(wall));
-  const int faces = static_cast<int>(mirrors.size());
-  for (int i = 0; i < faces; ++i)
-    for (int j = i + 1; j < faces; ++j) {
-      if (!touch(mirrors[i], mirrors[j], tolerance)) continue;
-      const coord c = cosine(mirrors[i], mirrors[j]);
-      require(std::fabs(c) < right_angle, "geometry: '", walls.bodies[mirrors[i].body], "' and '",
-              walls.bodies[mirrors[j].body], "' meet at ", std::acos(std::min(std::fabs(c), 1.0)) * 180 / M_PI,
-              " degrees: walls that touch must be at right angles to each other");
-      mirrors.push_back(corner_of(mirrors, i, j));
+// For each cell the panels within one radius of any point in it.
+std::vector<std::vector<int>> panels_near(const WallPanels& walls, const GridShape& grid, int dim) {
+  const coord within = grid.cell * (1 + std::sqrt(dim) / 2);  // one radius from a corner, seen from the centre
+  std::vector<std::vector<int>> near(grid.count());
+  for (int p = 0; p < static_cast<int>(walls.panels.size()); ++p)
+    for (int k = walls.panels[p].first_piece; k < walls.panels[p].last_piece; ++k) {
+      const Piece& piece = walls.pieces[k];
+      FaceCorners corner{};
+      for (int e = 0; e < dim; ++e) corner[e] = {piece.corner[e][0], piece.corner[e][1], piece.corner[e][2]};
+      std::array<int, 3> low{}, high{};
+      for (int d = 0; d < dim; ++d) {
+        coord from = corner[0][d], to = from;
+        for (int e = 1; e < dim; ++e) {
+          from = std::min(from, corner[e][d]);
+          to = std::max(to, corner[e][d]);
+        }
+        low[d] = grid.along(d, from - within);
+        high[d] = grid.along(d, to + within);
+      }
+      std::array<int, 3> c;
+      for (c[2] = low[2]; c[2] <= high[2]; ++c[2])
+        for (c[1] = low[1]; c[1] <= high[1]; ++c[1])
+          for (c[0] = low[0]; c[0] <= high[0]; ++c[0]) {
+            auto& list = near[(c[2] * grid.cells[1] + c[1]) * grid.cells[0] + c[0]];
+            if (!list.empty() && list.back() == p) continue;
+            if (distance_to_face(corner, dim, centre_of(grid, c, dim)) < within) list.push_back(p);
+          }
     }
-  return mirrors;
+  return near;
 }
 
-coord distance_to_mirror(const std::vector<Mirror>& mirrors, const Mirror& m, coord x, coord y) {
-  if (m.face[0] < 0) return distance_to_face(m, x, y);
-  return std::max(distance_to_face(mirrors[m.face[0]], x, y), distance_to_face(mirrors[m.face[1]], x, y));
+std::vector<int> panels_of(const Mirror& m, const WallPanels& walls) {
+  std::vector<int> panels;
+  if (m.joint >= 0) panels = {walls.joints[m.joint].panel[0], walls.joints[m.joint].panel[1]};
+  if (m.joint < 0 && m.length > 0) panels = {m.panel};
+  for (int e = 0; e < 3 && m.also[e] >= 0; ++e) panels.push_back(m.also[e]);
+  return panels;
 }
 
-// For each cell the mirrors within one radius of any point in it; and one bin more with all of them.
-void bin(MirrorWalls& walls, const std::vector<Mirror>& mirrors, const GridShape& grid) {
-  const coord within = grid.cell * (1 + std::sqrt(0.5));  // one radius from a corner of the cell, seen from its centre
+// A corner can be reached where all its panels can.
+void bin(MirrorWalls& made, const WallPanels& walls, const GridShape& grid, int dim) {
+  const int panels = static_cast<int>(walls.panels.size()), mirrors = static_cast<int>(walls.mirrors.size());
+  std::vector<std::vector<int>> corners_of(panels);  // by their lowest panel
+  std::vector<std::vector<int>> panels_of_mirror(mirrors);
+  for (int k = panels; k < mirrors; ++k) {
+    panels_of_mirror[k] = panels_of(walls.mirrors[k], walls);
+    corners_of[*std::min_element(panels_of_mirror[k].begin(), panels_of_mirror[k].end())].push_back(k);
+  }
   std::vector<int> first{0}, reach;
-  for (int c = 0; c < grid.count(); ++c) {
-    const coord x = grid.origin[0] + (c % grid.cells[0] + 0.5) * grid.cell;
-    const coord y = grid.origin[1] + (c / grid.cells[0] % grid.cells[1] + 0.5) * grid.cell;
-    for (int k = 0; k < static_cast<int>(mirrors.size()); ++k)
-      if (distance_to_mirror(mirrors, mirrors[k], x, y) < within) reach.push_back(k);
+  for (const auto& near : panels_near(walls, grid, dim)) {
+    reach.insert(reach.end(), near.begin(), near.end());
+    for (const int p : near)
+      for (const int k : corners_of[p])
+        if (std::all_of(panels_of_mirror[k].begin(), panels_of_mirror[k].end(),
+                        [&](int q) { return std::binary_search(near.begin(), near.end(), q); }))
+          reach.push_back(k);
     first.push_back(static_cast<int>(reach.size()));
   }
-  for (int k = 0; k < static_cast<int>(mirrors.size()); ++k) reach.push_back(k);
+  for (int k = 0; k < mirrors; ++k) reach.push_back(k);
   first.push_back(static_cast<int>(reach.size()));
-  auto upload = [](const std::string& label, const std::vector<int>& from) {
-    IndexField to = uncleared<IndexField>(label, from.size());
-    Kokkos::deep_copy(to, Kokkos::View<const int*, Kokkos::HostSpace>(from.data(), from.size()));
-    return to;
-  };
-  walls.first = upload("greenwater::mirror_first", first);
-  walls.reach = upload("greenwater::mirror_reach", reach);
+  upload(made.first, "greenwater::mirror_first", first);
+  upload(made.reach, "greenwater::mirror_reach", reach);
 }
 
 }  // namespace
 
-MirrorWalls make_mirror_walls(const WallFaces& walls, const GridShape& grid, coord spacing) {
-  MirrorWalls made;
-  if (walls.faces.empty()) return made;
+void make_mirror_walls(MirrorWalls& made, const WallFaces& faces, const GridShape& grid, coord spacing) {
+  if (faces.faces.empty()) return;
   made.tolerance = 1e-9 * spacing;
-  const std::vector<Mirror> mirrors = all_mirrors(walls, 1e-6 * spacing);
-  made.count = static_cast<int>(mirrors.size());
-  made.mirror = uncleared<Kokkos::View<Mirror*, Device>>("greenwater::mirrors", mirrors.size());
-  Kokkos::deep_copy(made.mirror, Kokkos::View<const Mirror*, Kokkos::HostSpace>(mirrors.data(), mirrors.size()));
-  bin(made, mirrors, grid);
-  return made;
+  const WallPanels walls = find_panels(faces, 1e-6 * spacing);
+  made.count = static_cast<int>(walls.mirrors.size());
+  made.panels = static_cast<int>(walls.panels.size());
+  upload(made.panel, "greenwater::mirror_panels", walls.panels);
+  upload(made.piece, "greenwater::mirror_pieces", walls.pieces);
+  upload(made.joint, "greenwater::mirror_joints", walls.joints);
+  upload(made.joint_of_panel, "greenwater::mirror_joint_of_panel", walls.joint_of_panel);
+  upload(made.mirror, "greenwater::mirrors", walls.mirrors);
+  bin(made, walls, grid, faces.dim);
 }
 
 }  // namespace greenwater

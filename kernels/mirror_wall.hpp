@@ -2,27 +2,78 @@
 // Walls by mirror symmetry, without ghost particles: a particle near a wall sees the images of its neighbours, and of
 // itself, in the wall. A plate of no thickness is wet on both sides, and the fluid sees itself round its free end.
 //
-// What sees what is a question of paths. Two particles see each other when the straight line between them meets no face.
-// A particle sees the image of another in a face when the path by way of the face, in at the angle it goes out, meets no
-// other face: the line to the image passes through the face itself. In a right-angled corner there is one image more,
-// by way of both faces. Every such path is the same backwards; and as each pair is always looked at from the one with
-// the lower index, both get the same answer to the last bit, which makes the pressure matrix symmetric.
+// What sees what is a question of paths. Two particles see each other when the straight line between them meets no wall.
+// A particle sees the image of another when a path by way of one or more walls, out of each at the angle at which it
+// goes in, leads there and meets no other wall: unfolded, that path is the line to the image. From any particle one path
+// leaves in every direction, and has one end: so the images fill what the walls take away, at any angle of a corner, and
+// n = n^0 there too. Every path is the same backwards; and as each pair is always looked at from the one with the lower
+// index, both get the same answer to the last bit, which makes the pressure matrix symmetric.
+//
+// Where a path passes close to the edge of a corner that is not right-angled, a slightly other path goes round the edge
+// the other way and ends elsewhere. There both images count in shares that make up one, so that nothing jumps when a
+// particle moves; in a right-angled corner both are the same image.
 
 #include "core/wall_faces.hpp"
 #include "kernels/cell_grid.hpp"
 
 namespace greenwater {
 
-/// One way to make an image: x' = map x + shift, u' = map u + velocity.
+/// A value on a panel that changes linearly along it: value + gradient (x - point of the panel).
+struct LinearField {
+  coord value[3], gradient[3][3];
+
+  template <int Dim>
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> at(const Vec<Dim, coord>& from_point) const {
+    Vec<Dim, coord> v;
+    for (int d = 0; d < Dim; ++d) {
+      v[d] = value[d];
+      for (int e = 0; e < Dim; ++e) v[d] += gradient[d][e] * from_point[e];
+    }
+    return v;
+  }
+};
+
+/// A segment (2-D) or triangle (3-D) of a panel.
+struct Piece {
+  coord corner[3][3];  // [m]
+  coord inward[3][3];  // unit, in the panel: a point q of the panel is in it when (q - corner[e]) . inward[e] >= 0
+};
+
+/// A plane stretch of wall: all pieces that lie in one plane, touch and move alike. In it one particle has one image.
+struct Panel {
+  coord normal[3];              // unit
+  coord point[3];               // its first corner [m]
+  int first_piece, last_piece;  // its pieces, the last one excluded
+  int first_joint, last_joint;  // its corners, as places in MirrorWalls::joint_of_panel
+  int body;                     // named geometry
+  bool no_slip, moves;
+  LinearField velocity;      // [m/s], mean over the step that led here
+  LinearField acceleration;  // [m/s^2]
+};
+
+/// The inside of a corner between two panels that do not stand at right angles; its angle is at most 180 degrees.
+struct Joint {
+  int panel[2];
+  coord point[3], edge[3];  // a point of the edge [m], and its direction (2-D: along z)
+  coord low, high;          // where the edge begins and ends, from the point [m]
+  coord along[2][3];        // unit, from the edge into each panel
+  coord across[3];          // unit, from the first panel into the corner
+  coord angle;              // between the panels [rad]
+  coord blend;              // how far past the edge paths still have a share [rad]
+};
+
+/// One way to make an image: x' = map x + shift. The path goes from the particle to `length` walls, in turn the two of
+/// the joint (or the one panel), beginning with `panel`; and to those in `also`, at right angles to all others, whenever
+/// it comes to them.
 struct Mirror {
   coord map[3][3];
-  coord shift[3];
-  real velocity[3];      // 2 (u_w . n) n, summed over the faces of a corner [m/s]
-  real acceleration[3];  // (a_w . n) n, summed over the faces of a corner [m/s^2]
-  coord end[2][3];       // of the face [m]; of a corner: both its point
-  coord normal[3];       // of the face; not of a corner
-  int face[2];           // the mirrors of a corner's two faces, or -1, -1 for a plain face
-  int body;              // named geometry of the face, -1 for a corner
+  coord shift[3];  // [m]
+  int length;
+  int panel;    // -1 when length is 0
+  int joint;    // -1: none
+  int also[3];  // -1: none
+  int reverse;  // the mirror of the path backwards
+  bool moves, no_slip;
 };
 
 /// x' = map x + shift
@@ -36,121 +87,254 @@ KOKKOS_INLINE_FUNCTION Vec<Dim, coord> image_position(const Mirror& m, const Vec
   return y;
 }
 
-/// u' = map u + velocity: free slip, the image moves with the wall's normal velocity mirrored.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION Vec<Dim> image_velocity(const Mirror& m, const Vec<Dim>& u) {
-  Vec<Dim> v;
-  for (int d = 0; d < Dim; ++d) {
-    v[d] = m.velocity[d];
-    for (int e = 0; e < Dim; ++e) v[d] += static_cast<real>(m.map[d][e]) * u[e];
-  }
-  return v;
-}
-
-/// The mirrors of a scene, and for each cell of the grid those that a particle in it can reach.
+/// The mirrors of a scene, and for each cell of the grid those that a particle in it can reach. Views may be longer than
+/// what is used, so that walls that move allocate nothing.
 struct MirrorWalls {
-  int count = 0;                         // 0: no walls, and then nothing here is allocated
-  Kokkos::View<Mirror*, Device> mirror;  // faces first, then corners
+  int count = 0;  // mirrors; 0: no walls, and then nothing here is allocated
+  int panels = 0;
+  Kokkos::View<Panel*, Device> panel;
+  Kokkos::View<Piece*, Device> piece;
+  Kokkos::View<Joint*, Device> joint;
+  IndexField joint_of_panel;
+  Kokkos::View<Mirror*, Device> mirror;  // mirror k < panels is that of panel k alone; then corners
   IndexField first, reach;               // of cell c: reach(first(c)) ... reach(first(c + 1) - 1), ascending;
                                          // after the last cell: all of them
-  coord tolerance = 0;                   // a face's ends are that much longer than they are [m]
+  coord tolerance = 0;                   // panels are that much longer than they are [m]
 };
 
-/// Makes mirrors of the faces and of every right-angled corner between two of them, and bins them into the grid.
-/// Throws CaseError when faces meet at another angle.
-MirrorWalls make_mirror_walls(const WallFaces& walls, const GridShape& grid, coord spacing);
+/// Makes panels, joints and mirrors of the faces as they stand now and bins them into the grid; memory is kept and only
+/// grown. Throws CaseError when two panels meet at less than 5 degrees.
+void make_mirror_walls(MirrorWalls& made, const WallFaces& faces, const GridShape& grid, coord spacing);
 
-/// Device view of the mirrors near one cell: the questions of sight.
+/// The piece of walls that a kernel works with: views and the questions of sight near one cell.
 template <int Dim>
 struct Sight {
-  Kokkos::View<const Mirror*, Device> mirror;
-  Read<IndexField> reach;
-  int begin, end;
+  const Panel* panel;  // plain pointers: one of these is made for each particle
+  const Piece* piece;
+  const Joint* joint;
+  const int* joint_of_panel;
+  const Mirror* mirror;
+  const int* reach;
+  int panels, begin, end;
   coord tolerance;
 
-  KOKKOS_INLINE_FUNCTION static coord side(const Mirror& m, const Vec<Dim, coord>& x) {
-    coord s = 0;
-    for (int d = 0; d < Dim; ++d) s += m.normal[d] * (x[d] - m.end[0][d]);
-    return s;
+  using Point = Vec<Dim, coord>;
+
+  KOKKOS_INLINE_FUNCTION static Point as_vec(const coord* c) {
+    Point v;
+    for (int d = 0; d < Dim; ++d) v[d] = c[d];
+    return v;
   }
 
-  KOKKOS_INLINE_FUNCTION bool on_face(const Mirror& m, const Vec<Dim, coord>& q) const {
-    coord along_face = 0, length2 = 0;
-    for (int d = 0; d < Dim; ++d) {
-      const coord t = m.end[1][d] - m.end[0][d];
-      along_face += t * (q[d] - m.end[0][d]);
-      length2 += t * t;
+  KOKKOS_INLINE_FUNCTION static coord side(const Panel& p, const Point& x) {
+    return dot(as_vec(p.normal), difference(x, as_vec(p.point)));
+  }
+
+  /// Is q, a point of the panel's plane, on the panel?
+  KOKKOS_INLINE_FUNCTION bool on_panel(const Panel& p, const Point& q) const {
+    for (int k = p.first_piece; k < p.last_piece; ++k) {
+      bool in = true;
+      for (int e = 0; e < Dim; ++e)
+        in = in && dot(as_vec(piece[k].inward[e]), difference(q, as_vec(piece[k].corner[e]))) >= -tolerance;
+      if (in) return true;
     }
-    const coord length = sqrt(length2);
-    return along_face >= -tolerance * length && along_face <= length2 + tolerance * length;
+    return false;
   }
 
-  KOKKOS_INLINE_FUNCTION static bool is_face(const Mirror& m) { return m.face[0] < 0; }
-
-  /// Does the segment from p to q meet the face? Its ends count, so that nothing slips through along an edge.
-  KOKKOS_INLINE_FUNCTION bool meets(const Mirror& m, const Vec<Dim, coord>& p, const Vec<Dim, coord>& q) const {
-    const coord sp = side(m, p), sq = side(m, q);
+  /// Does the segment from p to q meet the panel? Its ends count, so that nothing slips through along an edge.
+  KOKKOS_INLINE_FUNCTION bool meets(const Panel& w, const Point& p, const Point& q) const {
+    const coord sp = side(w, p), sq = side(w, q);
     if (sp * sq > 0 || sp == sq) return false;
-    return on_face(m, along(p, sp / (sp - sq), difference(q, p)));
+    return on_panel(w, greenwater::along(p, sp / (sp - sq), difference(q, p)));
   }
 
-  /// Does the segment meet no face but those of the path (which are given by number, or -1)?
-  KOKKOS_INLINE_FUNCTION bool open(const Vec<Dim, coord>& p, const Vec<Dim, coord>& q, int one, int two) const {
+  /// Do a and b see each other?
+  KOKKOS_INLINE_FUNCTION bool sees(const Point& a, const Point& b) const {
+    for (int k = begin; k < end && reach[k] < panels; ++k)
+      if (meets(panel[reach[k]], a, b)) return false;
+    return true;
+  }
+
+  /// The share with which a sees the image of b in mirror number k (and b that of a in its reverse): 1 as a rule, less
+  /// where the path passes close to the edge of a corner, 0 where it is not seen. a may be b: its own image.
+  KOKKOS_INLINE_FUNCTION real sees_image(int k, const Point& a, const Point& b) const {
+    const Mirror& m = mirror[k];
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e)
+      if (!(side(panel[m.also[e]], a) * side(panel[m.also[e]], b) > 0)) return 0;
+    Spared spared;
+    coord share = 1;
+    if (m.length > 1) {
+      share = share_at(joint[m.joint], m.panel, m.length, a, b);
+      if (!(share > 0)) return 0;
+      spared.add(joint[m.joint].panel[0]);
+      spared.add(joint[m.joint].panel[1]);
+    } else if (m.length == 1) {
+      if (!(side(panel[m.panel], a) * side(panel[m.panel], b) > 0)) return 0;
+      share *= share_of_panel(m.panel, a, b, spared);
+    }
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) share *= share_of_panel(m.also[e], a, b, spared);
+    if (!(share > 0)) return 0;
+    Point from_a, from_b;
+    if (!first_bounce(m, a, b, from_a) || !open(a, from_a, spared)) return 0;
+    if (k < panels) return open(from_a, b, spared) ? static_cast<real>(share) : real(0);
+    if (!first_bounce(mirror[m.reverse], b, a, from_b)) return 0;
+    return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
+  }
+
+  /// Nobody at x sees anything in this mirror within `radius`.
+  KOKKOS_INLINE_FUNCTION bool out_of_reach(const Mirror& m, const Point& x, coord radius) const {
+    coord away2 = 0;  // of a right-angled corner; an image is at least as far as its corner is
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) {
+      const coord s = side(panel[m.also[e]], x);
+      away2 += s * s;
+    }
+    if (m.length == 1) {
+      const coord s = side(panel[m.panel], x);
+      away2 += s * s;
+    }
+    if (away2 >= radius * radius) return true;
+    if (m.length <= 1) return false;
+    const Joint& q = joint[m.joint];
+    coord angle;
+    return fabs(side(panel[q.panel[0]], x)) >= radius || fabs(side(panel[q.panel[1]], x)) >= radius ||
+           !inside(q, x, angle);
+  }
+
+ private:
+  // Panels that a path touches by right: they do not hide it from anybody.
+  struct Spared {
+    int panel[8];
+    int count = 0;
+    KOKKOS_INLINE_FUNCTION void add(int p) {
+      if (!has(p) && count < 8) panel[count++] = p;
+    }
+    KOKKOS_INLINE_FUNCTION bool has(int p) const {
+      for (int k = 0; k < count; ++k)
+        if (panel[k] == p) return true;
+      return false;
+    }
+  };
+
+  KOKKOS_INLINE_FUNCTION bool open(const Point& p, const Point& q, const Spared& spared) const {
     for (int k = begin; k < end; ++k) {
-      const int f = reach(k);
-      if (f == one || f == two || !is_face(mirror(f))) continue;
-      if (meets(mirror(f), p, q)) return false;
+      const int f = reach[k];
+      if (f >= panels) return true;  // from here on: corners
+      if (!spared.has(f) && meets(panel[f], p, q)) return false;
     }
     return true;
   }
 
-  /// Do a and b see each other?
-  KOKKOS_INLINE_FUNCTION bool sees(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
-    return open(a, b, -1, -1);
-  }
-
-  /// Does a see the image of b in mirror number k (and b that of a)? a may be b: its own image.
-  KOKKOS_INLINE_FUNCTION bool sees_image(int k, const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
-    return is_face(mirror(k)) ? by_face(k, a, b) : by_corner(k, a, b);
-  }
-
- private:
-  KOKKOS_INLINE_FUNCTION bool by_face(int k, const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
-    const Mirror& m = mirror(k);
-    const coord sa = side(m, a), sb = side(m, b);
-    if (!(sa * sb > 0)) return false;
-    const auto q = along(a, sa / (sa + sb), difference(image_position(m, b), a));
-    return on_face(m, q) && open(a, q, k, -1) && open(q, b, k, -1);
-  }
-
-  // The corner's point is c. The line to the image crosses the plane of face f at |y0| from c and that of g at |x0|;
-  // the path meets the faces there, on the particles' side of c, in the order in which the line crosses the planes.
-  KOKKOS_INLINE_FUNCTION bool by_corner(int k, const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) const {
-    const int kf = mirror(k).face[0], kg = mirror(k).face[1];
-    const Mirror &f = mirror(kf), &g = mirror(kg);
-    const coord fa = side(f, a), fb = side(f, b), ga = side(g, a), gb = side(g, b);
-    if (!(fa * fb > 0) || !(ga * gb > 0)) return false;
-    const coord at_f = fa / (fa + fb), at_g = ga / (ga + gb);
-    const coord y0 = fabs(ga - at_f * (ga + gb)), x0 = fabs(fa - at_g * (fa + fb));
-    Vec<Dim, coord> on_f, on_g;
-    for (int d = 0; d < Dim; ++d) {
-      on_f[d] = mirror(k).end[0][d] + (ga > 0 ? y0 : -y0) * g.normal[d];
-      on_g[d] = mirror(k).end[0][d] + (fa > 0 ? x0 : -x0) * f.normal[d];
+  // Is x inside the corner? Its angle is measured from the joint's first panel.
+  KOKKOS_INLINE_FUNCTION bool inside(const Joint& q, const Point& x, coord& angle) const {
+    const auto r = difference(x, as_vec(q.point));
+    if constexpr (Dim == 3) {
+      const coord z = dot(as_vec(q.edge), r);
+      if (z < q.low - tolerance || z > q.high + tolerance) return false;
     }
-    if (!on_face(f, on_f) || !on_face(g, on_g)) return false;
-    const auto& q1 = at_f < at_g ? on_f : on_g;
-    const auto& q2 = at_f < at_g ? on_g : on_f;
-    return open(a, q1, kf, kg) && open(q1, q2, kf, kg) && open(q2, b, kf, kg);
+    angle = atan2(dot(as_vec(q.across), r), dot(as_vec(q.along[0]), r));
+    return angle > 0 && angle < q.angle;
   }
+
+  // The line to the image sweeps this angle round the edge; beyond 180 degrees the path round the edge's other side is
+  // the shorter one. Shares fall from 1 to 0 there, and those of both sides make up 1.
+  KOKKOS_INLINE_FUNCTION coord share_at(const Joint& q, int first, int length, const Point& a, const Point& b) const {
+    coord at_a, at_b;
+    if (!inside(q, a, at_a) || !inside(q, b, at_b)) return 0;
+    if (first != q.panel[0]) {
+      at_a = q.angle - at_a;
+      at_b = q.angle - at_b;
+    }
+    return share_of_sweep(q, at_a + (length % 2 == 1 ? (length - 1) * q.angle + at_b : length * q.angle - at_b));
+  }
+
+  KOKKOS_INLINE_FUNCTION static coord share_of_sweep(const Joint& q, coord sweep) {
+    const coord left = half_turn - sweep;
+    if (left >= q.blend + 1e-9) return 1;
+    if (left <= -q.blend - 1e-9) return 0;
+    return q.blend > 1e-6 ? 0.5 + 0.5 * left / q.blend : 0.5;
+  }
+
+  // The corners at the panel's ends, as far as a and b are both inside.
+  KOKKOS_INLINE_FUNCTION coord share_of_panel(int p, const Point& a, const Point& b, Spared& spared) const {
+    spared.add(p);
+    coord share = 1;
+    for (int k = panel[p].first_joint; k < panel[p].last_joint; ++k) {
+      const Joint& q = joint[joint_of_panel[k]];
+      coord at_a, at_b;
+      if (!inside(q, a, at_a) || !inside(q, b, at_b)) continue;
+      share *= p == q.panel[0] ? share_of_sweep(q, at_a + at_b) : share_of_sweep(q, 2 * q.angle - at_a - at_b);
+      spared.add(q.panel[0] == p ? q.panel[1] : q.panel[0]);
+    }
+    return share;
+  }
+
+  // Where the path from a to the image of b comes to its first wall. False when it misses the wall's end.
+  KOKKOS_INLINE_FUNCTION bool first_bounce(const Mirror& m, const Point& a, const Point& b, Point& at) const {
+    const auto line = difference(image_position(m, b), a);
+    coord least = 2;
+    int wall = -1;
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) way_to(m.also[e], a, line, least, wall);
+    if (m.length > 0) way_to(m.panel, a, line, least, wall);
+    if (wall < 0) {  // past the edge: the path touches it
+      if (m.length <= 1) return false;
+      const Joint& q = joint[m.joint];
+      at = as_vec(q.point);
+      if constexpr (Dim == 3) {
+        const auto middle = greenwater::along(a, coord(0.5), line);
+        at = greenwater::along(at, dot(as_vec(q.edge), difference(middle, at)), as_vec(q.edge));
+      }
+      return true;
+    }
+    at = greenwater::along(a, least, line);
+    return on_panel(panel[wall], at) || at_edge(wall, a, b, at);
+  }
+
+  KOKKOS_INLINE_FUNCTION void way_to(int p, const Point& a, const Point& line, coord& least, int& wall) const {
+    const coord from = side(panel[p], a), slope = dot(as_vec(panel[p].normal), line);
+    const coord t = slope == 0 ? coord(2) : -from / slope;
+    if (!(t >= 0 && t < least && t <= 1)) return;
+    least = t;
+    wall = p;
+  }
+
+  // A point of the panel's plane beyond the edge of a corner that a and b are in moves onto that edge.
+  KOKKOS_INLINE_FUNCTION bool at_edge(int p, const Point& a, const Point& b, Point& at) const {
+    for (int k = panel[p].first_joint; k < panel[p].last_joint; ++k) {
+      const Joint& q = joint[joint_of_panel[k]];
+      coord at_a, at_b;
+      if (!inside(q, a, at_a) || !inside(q, b, at_b)) continue;
+      const auto along = as_vec(q.along[q.panel[0] == p ? 0 : 1]);
+      const coord beyond = dot(along, difference(at, as_vec(q.point)));
+      if (beyond > 0) continue;
+      at = greenwater::along(at, -beyond, along);
+      return true;
+    }
+    return false;
+  }
+
+  static constexpr coord half_turn = 3.14159265358979323846;
 };
 
 /// What can be met within one radius of x; empty without walls. `far`: at any distance.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION Sight<Dim> sight_from(const MirrorWalls& walls, const GridShape& grid, const Vec<Dim, coord>& x,
                                              bool far = false) {
-  if (walls.count == 0) return {walls.mirror, walls.reach, 0, 0, 0};
-  const int c = far ? grid.count() : grid.cell_of(x);
-  return {walls.mirror, walls.reach, walls.first(c), walls.first(c + 1), walls.tolerance};
+  int begin = 0, end = 0;
+  if (walls.count > 0) {
+    const int c = far ? grid.count() : grid.cell_of(x);
+    begin = walls.first(c);
+    end = walls.first(c + 1);
+  }
+  return {walls.panel.data(),
+          walls.piece.data(),
+          walls.joint.data(),
+          walls.joint_of_panel.data(),
+          walls.mirror.data(),
+          walls.reach.data(),
+          walls.panels,
+          begin,
+          end,
+          walls.tolerance};
 }
 
 }  // namespace greenwater

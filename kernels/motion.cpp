@@ -13,40 +13,105 @@ void clear_acceleration_in(const VectorField& a, int count) {
       });
 }
 
-// A way from x to x + dx that crosses a face is bent: along the face it goes on, towards the face it ends where it
-// began, and the speed towards the face becomes the face's own. Returns whether it was.
+// Whether walls move while particles do (in correct() they are where they go already), and for how long [s].
+struct Sweep {
+  bool with_walls;
+  coord dt;
+};
+
+// Where the corners of a piece were at the start of the step.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION bool stop_at_faces(const MirrorWalls& walls, const GridShape& grid, const Vec<Dim, coord>& x,
-                                          Vec<Dim, coord>& dx, Vec<Dim>& u) {
+KOKKOS_INLINE_FUNCTION void corners_before(const Panel& w, const Piece& piece, coord dt, Vec<Dim, coord>* corner) {
+  for (int e = 0; e < Dim; ++e) {
+    corner[e] = Sight<Dim>::as_vec(piece.corner[e]);
+    corner[e] = along(corner[e], -dt, w.velocity.at(difference(corner[e], Sight<Dim>::as_vec(w.point))));
+  }
+}
+
+// Distance of x from the plane of a piece [m], with the sign of the side that x is on.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION coord side_of_piece(const Vec<Dim, coord>* c, const Vec<Dim, coord>& x) {
+  const auto a = difference(c[1], c[0]), r = difference(x, c[0]);
+  if constexpr (Dim == 2) {
+    return (a[0] * r[1] - a[1] * r[0]) / sqrt(dot(a, a));
+  } else {
+    const auto b = difference(c[2], c[0]);
+    const Vec<3, coord> n{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    return dot(n, r) / sqrt(dot(n, n));
+  }
+}
+
+// Is q, a point in the plane of the corners, between them? A millionth of the piece's size is let pass.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION bool between(const Vec<Dim, coord>* c, const Vec<Dim, coord>& q) {
+  constexpr coord slack = -1e-6;
+  const auto a = difference(c[1], c[0]), r = difference(q, c[0]);
+  const coord aa = dot(a, a), ar = dot(a, r);
+  if constexpr (Dim == 2) {
+    return ar >= slack * aa && ar <= (1 - slack) * aa;
+  } else {
+    const auto b = difference(c[2], c[0]);
+    const coord ab = dot(a, b), bb = dot(b, b), br = dot(b, r), det = aa * bb - ab * ab;
+    const coord s = (bb * ar - ab * br) / det, t = (aa * br - ab * ar) / det;
+    return s >= slack && t >= slack && s + t <= 1 - slack;
+  }
+}
+
+// Does a particle on its way from x to x + dx meet a panel on its own way? `side` is then the side of the panel, as it
+// stands at the end, on which the particle has to end to keep its distance [m].
+template <int Dim>
+KOKKOS_INLINE_FUNCTION bool meets_moving(const Sight<Dim>& sight, const Panel& w, coord dt, const Vec<Dim, coord>& x,
+                                         const Vec<Dim, coord>& dx, coord& side) {
+  const auto end = along(x, coord(1), dx);
+  for (int k = w.first_piece; k < w.last_piece; ++k) {
+    Vec<Dim, coord> before[3], then[3];
+    corners_before(w, sight.piece[k], dt, before);
+    for (int e = 0; e < Dim; ++e) then[e] = Sight<Dim>::as_vec(sight.piece[k].corner[e]);
+    const coord from = side_of_piece(before, x), to = side_of_piece(then, end);
+    if (from * to > 0 || from == to) continue;
+    const coord s = from / (from - to);
+    for (int e = 0; e < Dim; ++e) then[e] = along(before[e], s, difference(then[e], before[e]));
+    if (!between(then, along(x, s, dx))) continue;
+    side = to * sight.side(w, end) < 0 ? -from : from;  // the piece may be turned against its panel
+    return true;
+  }
+  return false;
+}
+
+// A way from x to x + dx that crosses a wall is bent: along the wall it goes on, towards the wall it ends where it began
+// as seen from the wall, and the speed towards the wall becomes the wall's own. Returns whether it was.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION bool stop_at_walls(const MirrorWalls& walls, const GridShape& grid, const Sweep& sweep,
+                                          const Vec<Dim, coord>& x, Vec<Dim, coord>& dx, Vec<Dim>& u) {
   const auto sight = sight_from(walls, grid, x, dot(dx, dx) > grid.cell * grid.cell);
   bool stopped = false;
+  Vec<Dim, coord> carried{};
   for (int k = sight.begin; k < sight.end; ++k) {
-    const Mirror& m = sight.mirror(sight.reach(k));
-    if (!sight.is_face(m) || !sight.meets(m, x, along(x, coord(1), dx))) continue;
-    coord way = 0;
-    real speed = 0;
-    for (int d = 0; d < Dim; ++d) {
-      way += dx[d] * m.normal[d];
-      speed += (u[d] - m.velocity[d] / 2) * static_cast<real>(m.normal[d]);
-    }
-    for (int d = 0; d < Dim; ++d) {
-      dx[d] -= way * m.normal[d];
-      u[d] -= speed * static_cast<real>(m.normal[d]);
-    }
+    if (sight.reach[k] >= sight.panels) break;
+    const Panel& w = sight.panel[sight.reach[k]];
+    coord side = sight.side(w, x);
+    const bool moving = sweep.with_walls && w.moves;
+    if (!(moving ? meets_moving(sight, w, sweep.dt, x, dx, side) : sight.meets(w, x, along(x, coord(1), dx)))) continue;
+    const auto n = sight.as_vec(w.normal);
+    const auto u_w = w.velocity.at(difference(x, sight.as_vec(w.point)));
+    coord speed = 0;
+    for (int d = 0; d < Dim; ++d) speed += (u[d] - u_w[d]) * n[d];
+    for (int d = 0; d < Dim; ++d) u[d] -= static_cast<real>(speed * n[d]);
+    dx = along(dx, side - sight.side(w, along(x, coord(1), dx)), n);
+    if (moving) carried = along(Vec<Dim, coord>{}, side - sight.side(w, x), n);
     stopped = true;
   }
-  // Past the end of one face and into another: stay.
-  if (stopped && !sight.sees(x, along(x, coord(1), dx)))
-    for (int d = 0; d < Dim; ++d) dx[d] = 0;
+  // Past the end of one wall and into another: stay, or go with the wall.
+  if (stopped && !sight.sees(x, along(x, coord(1), dx))) dx = carried;
   return stopped;
 }
 
 // Moves particle i by dx, or as far as the walls let it. Returns 1 when they stopped it.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION int move(const MirrorWalls& walls, const GridShape& grid, const CoordField& x,
-                                const VectorField& u, int i, Vec<Dim, coord> dx, Vec<Dim> ui) {
+KOKKOS_INLINE_FUNCTION int move(const MirrorWalls& walls, const GridShape& grid, const Sweep& sweep,
+                                const CoordField& x, const VectorField& u, int i, Vec<Dim, coord> dx, Vec<Dim> ui) {
   const auto xi = load<Dim>(x, i);
-  const int stopped = stop_at_faces(walls, grid, xi, dx, ui) ? 1 : 0;
+  const int stopped = stop_at_walls(walls, grid, sweep, xi, dx, ui) ? 1 : 0;
   store(u, i, ui);
   store(x, i, along(xi, coord(1), dx));
   return stopped;
@@ -60,6 +125,7 @@ int predict_in(Fluid& fluid, real dt) {
   const auto a = Read<VectorField>(fluid.particles.acceleration);
   const auto walls = fluid.walls;
   const real g[3] = {fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]};
+  const Sweep sweep{true, dt};
   int stops = 0;
   Kokkos::parallel_reduce(
       "greenwater::predict", Range(0, fluid.particles.count),
@@ -70,7 +136,7 @@ int predict_in(Fluid& fluid, real dt) {
           ui[d] += dt * (g[d] + a(i, d));
           dx[d] = dt * ui[d];
         }
-        sum += move(walls, grid, x, u, i, dx, ui);
+        sum += move(walls, grid, sweep, x, u, i, dx, ui);
       },
       stops);
   return stops;
@@ -83,6 +149,7 @@ int correct_in(Fluid& fluid, real dt) {
   const auto u = fluid.particles.velocity;
   const auto a = Read<VectorField>(fluid.particles.acceleration);
   const auto walls = fluid.walls;
+  const Sweep sweep{false, 0};
   int stops = 0;
   Kokkos::parallel_reduce(
       "greenwater::correct", Range(0, fluid.particles.count),
@@ -93,7 +160,7 @@ int correct_in(Fluid& fluid, real dt) {
           ui[d] += dt * a(i, d);
           dx[d] = coord(dt) * dt * a(i, d);
         }
-        sum += move(walls, grid, x, u, i, dx, ui);
+        sum += move(walls, grid, sweep, x, u, i, dx, ui);
       },
       stops);
   return stops;
@@ -101,7 +168,7 @@ int correct_in(Fluid& fluid, real dt) {
 
 template <int Dim>
 void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto x = Read<CoordField>(fluid.particles.position);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto drive = drive_of<Dim>(fluid);
@@ -113,12 +180,12 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
       "greenwater::pressure_gradient", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         real p_min = p(i);
         Vec<Dim> sum_pf{}, sum_f{};  // sum (p_j - p_min) f = sum p_j f - p_min sum f: one pass
-        around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror* m) {
+        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
           const real r2 = dot(r, r);
-          const real weight = w(sqrt(r2));
+          const real weight = image.share * w(sqrt(r2));
           if (!(weight > 0) || r2 < touching) return;
           real pj = p(j);
-          if (m) pj += rho * image_offset(*m, drive.at(j), load<Dim>(x, j));
+          if (image) pj += rho * image.pressure_offset(drive.at(j), load<Dim>(x, j));
           p_min = smaller(p_min, pj);
           for (int d = 0; d < Dim; ++d) {
             const real f = r[d] * weight / r2;

@@ -8,8 +8,8 @@ namespace greenwater {
 /// acceleration = 0
 void clear_acceleration(Fluid& fluid);
 
-/// u* = u + dt (g + acceleration), x* = x + dt u*. A particle whose way crosses a face is stopped there: it keeps its
-/// distance from the face and takes its normal velocity. Returns how many were stopped.
+/// u* = u + dt (g + acceleration), x* = x + dt u*. A particle whose way crosses a wall, which may be moving
+/// too, is stopped there: it keeps its distance from the wall and takes its normal velocity. Returns how many were.
 int predict(Fluid& fluid, real dt);
 
 /// p = max(p, 0): classic MPS knows no tension.

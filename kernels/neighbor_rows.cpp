@@ -27,15 +27,17 @@ struct Search {
   KOKKOS_INLINE_FUNCTION void neighbours(int i, F f) const {
     const auto xi = load<Dim>(x, i);
     const auto sight = sight_from(walls, grid, xi);
+    const bool in_the_open = sight.begin == sight.end;
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
       if (j == i) return;
       const auto xj = load<Dim>(x, j);
       const coord r2 = distance2(xi, xj);
-      if (within_reach(r2) && (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, r2);
+      if (!within_reach(r2)) return;
+      if (in_the_open || (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, r2);
     });
   }
 
-  // Calls f(j, k, r^2) for every image, of particle j in mirror k, that i sees.
+  // Calls f(j, k, r^2, share) for every image, of particle j in mirror k, that i sees.
   template <class F>
   KOKKOS_INLINE_FUNCTION void images(int i, F f) const {
     const auto xi = load<Dim>(x, i);
@@ -43,28 +45,19 @@ struct Search {
     for (int m = sight.begin; m < sight.end; ++m) {
       const int k = walls.reach(m);
       const Mirror& mirror = walls.mirror(k);
-      if (out_of_reach(mirror, xi)) continue;
+      if (sight.out_of_reach(mirror, xi, radius)) continue;
       for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
         const auto xj = load<Dim>(x, j);
         // Always from the lower index: the same number for both, to the last bit.
         const bool forward = i <= j;
+        const int way = forward ? k : mirror.reverse;
         const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
-        const coord r2 = distance2(a, image_position(mirror, b));
-        if (within_reach(r2) && sight.sees_image(k, a, b)) f(j, k, r2);
+        const coord r2 = distance2(a, image_position(walls.mirror(way), b));
+        if (!within_reach(r2)) return;
+        const real share = sight.sees_image(way, a, b);
+        if (share > 0) f(j, k, r2, share);
       });
     }
-  }
-
-  // An image is at least as far as its wall, or its corner, is.
-  KOKKOS_INLINE_FUNCTION bool out_of_reach(const Mirror& mirror, const Vec<Dim, coord>& xi) const {
-    if (!Sight<Dim>::is_face(mirror)) return !within_reach(distance2(xi, load_point(mirror)));
-    return fabs(Sight<Dim>::side(mirror, xi)) >= radius;
-  }
-
-  KOKKOS_INLINE_FUNCTION static Vec<Dim, coord> load_point(const Mirror& mirror) {
-    Vec<Dim, coord> c;
-    for (int d = 0; d < Dim; ++d) c[d] = mirror.end[0][d];
-    return c;
   }
 };
 
@@ -97,7 +90,7 @@ void count_images_in(const Search<Dim>& search, const OffsetField& number, int c
   Kokkos::parallel_for(
       "greenwater::count_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
         std::int64_t n = 0;
-        search.images(i, [&](int, int, coord) { ++n; });
+        search.images(i, [&](int, int, coord, real) { ++n; });
         number(i) = n;
       });
 }
@@ -108,10 +101,11 @@ void fill_images_in(const Search<Dim>& search, const ImageRows& rows, int count)
   Kokkos::parallel_for(
       "greenwater::fill_images", Range(0, count), KOKKOS_LAMBDA(const int i) {
         auto k = rows.first(i);
-        search.images(i, [&](const int j, const int m, const coord r2) {
+        search.images(i, [&](const int j, const int m, const coord r2, const real share) {
           rows.index(k) = j;
           rows.mirror(k) = m;
-          if (keep) rows.weight(k) = search.weight_at(r2);
+          rows.share(k) = share;
+          if (keep) rows.weight(k) = share * search.weight_at(r2);
           ++k;
         });
       });
@@ -155,6 +149,7 @@ void build_in(NeighborRows& rows, const Search<Dim>& search, bool keep, int coun
   if (static_cast<std::int64_t>(rows.images.index.extent(0)) < image) {
     rows.images.index = uncleared<IndexField>("greenwater::image_index", roomy(image));
     rows.images.mirror = uncleared<IndexField>("greenwater::image_mirror", roomy(image));
+    rows.images.share = uncleared<ScalarField>("greenwater::image_share", roomy(image));
     if (keep) rows.images.weight = uncleared<ScalarField>("greenwater::image_weight", roomy(image));
   }
   fill_images_in(search, rows.images, count);
@@ -164,7 +159,6 @@ void build_in(NeighborRows& rows, const Search<Dim>& search, bool keep, int coun
 
 void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
                          const RowOptions& options) {
-  mirrors = walls.mirror;
   const auto build = [&](const auto& search) { build_in(*this, search, options.keep_weights, particles.count); };
   if (particles.dim == 2)
     build(Search<2>{particles.position, grid.first(), grid.shape(), walls, options.weight, options.radius});

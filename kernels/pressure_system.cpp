@@ -11,7 +11,7 @@ real laplacian_factor(const Fluid& fluid) {
 // An image of i itself has the pressure of i and drops out.
 template <int Dim>
 void diagonal_in(const Fluid& fluid, const PressureOptions& options, real dt, const ScalarField& diagonal) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto w = fluid.laplacian.weight;
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const real C_K = options.diagonal_factor * laplacian_factor(fluid);
@@ -19,8 +19,8 @@ void diagonal_in(const Fluid& fluid, const PressureOptions& options, real dt, co
   Kokkos::parallel_for(
       "greenwater::pressure_diagonal", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         real sum = 0;
-        around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror*) {
-          if (j != i) sum += w(sqrt(dot(r, r)));
+        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
+          if (j != i) sum += image.share * w(sqrt(dot(r, r)));
         });
         diagonal(i) = fixed(i) ? real(1) : C_K * sum + shift;
       });
@@ -38,7 +38,7 @@ void density_source(const Fluid& fluid, real gamma, real dt, const ScalarField& 
 
 template <int Dim>
 void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const auto w = fluid.gradient.weight;
@@ -48,10 +48,10 @@ void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
       "greenwater::divergence_source", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         const auto ui = load<Dim>(u, i);
         real div = 0;
-        around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror* m) {
-          const auto uj = m ? image_velocity(*m, load<Dim>(u, j)) : load<Dim>(u, j);
+        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
+          const auto uj = image ? image.velocity(load<Dim>(u, j)) : load<Dim>(u, j);
           const real r2 = dot(r, r);
-          if (r2 > touching) div += dot(difference(uj, ui), r) * w(sqrt(r2)) / r2;
+          if (r2 > touching) div += dot(difference(uj, ui), r) * image.share * w(sqrt(r2)) / r2;
         });
         b(i) = fixed(i) ? real(0) : factor * div;
       });
@@ -82,15 +82,15 @@ void apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const S
 template <int Dim>
 void apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p,
                          const ScalarField& Ap) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto w = fluid.laplacian.weight;
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   Kokkos::parallel_for(
       "greenwater::apply_pressure", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         real sum = 0;
         if (!fixed(i)) {
-          around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror*) {
-            if (j != i) sum += w(sqrt(dot(r, r))) * p(j);
+          near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
+            if (j != i) sum += image.share * w(sqrt(dot(r, r))) * p(j);
           });
           sum = diagonal(i) * p(i) - K * sum;
         }

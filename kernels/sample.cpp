@@ -1,5 +1,6 @@
 #include "kernels/sample.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -105,18 +106,60 @@ std::vector<double> PointSampler::pressure(const Fluid& fluid, const std::vector
   return values;
 }
 
+namespace {
+
+using Place = std::array<coord, 3>;
+
+Place between(const Place& a, const Place& b, coord s) {
+  Place x;
+  for (int d = 0; d < 3; ++d) x[d] = a[d] + s * (b[d] - a[d]);
+  return x;
+}
+
+coord distance(const Place& a, const Place& b) { return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]); }
+
+int pieces_of(coord whole, coord length) { return std::max(1, static_cast<int>(std::ceil(whole / length - 1e-9))); }
+
+void cut_segment(const Place& a, const Place& b, coord length, std::vector<WallPatch>& patches) {
+  const coord whole = distance(a, b);
+  const Place normal{-(b[1] - a[1]) / whole, (b[0] - a[0]) / whole, 0};
+  const int pieces = pieces_of(whole, length);
+  for (int k = 0; k < pieces; ++k) patches.push_back({between(a, b, (k + 0.5) / pieces), normal, whole / pieces});
+}
+
+// Into n^2 triangles of one shape.
+void cut_triangle(const Place& a, const Place& b, const Place& c, coord length, std::vector<WallPatch>& patches) {
+  Place normal{};
+  for (int d = 0; d < 3; ++d) {
+    const int e = (d + 1) % 3, f = (d + 2) % 3;
+    normal[d] = (b[e] - a[e]) * (c[f] - a[f]) - (b[f] - a[f]) * (c[e] - a[e]);
+  }
+  const coord twice_area = std::hypot(normal[0], normal[1], normal[2]);
+  for (coord& component : normal) component /= twice_area;
+  const int n = pieces_of(std::max({distance(a, b), distance(b, c), distance(c, a)}), length);
+  const auto at = [&](coord s, coord t) {
+    Place x;
+    for (int d = 0; d < 3; ++d) x[d] = a[d] + s / n * (b[d] - a[d]) + t / n * (c[d] - a[d]);
+    return x;
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; i + j < n; ++j) {
+      patches.push_back({at(i + 1 / 3.0, j + 1 / 3.0), normal, twice_area / 2 / n / n});
+      if (i + j + 1 < n) patches.push_back({at(i + 2 / 3.0, j + 2 / 3.0), normal, twice_area / 2 / n / n});
+    }
+}
+
+}  // namespace
+
 std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord length) {
   std::vector<WallPatch> patches;
   for (const WallFace& face : walls.faces) {
     if (face.body != body) continue;
-    const coord tx = face.end[1][0] - face.end[0][0], ty = face.end[1][1] - face.end[0][1];
-    const coord whole = std::hypot(tx, ty);
-    const int pieces = static_cast<int>(std::ceil(whole / length - 1e-9));
-    for (int k = 0; k < pieces; ++k) {
-      const coord s = (k + 0.5) / pieces;
-      patches.push_back(
-          {{face.end[0][0] + s * tx, face.end[0][1] + s * ty, 0}, {-ty / whole, tx / whole, 0}, whole / pieces});
-    }
+    const auto& c = face.corner;
+    if (walls.dim == 2)
+      cut_segment(c[0].position, c[1].position, length, patches);
+    else
+      cut_triangle(c[0].position, c[1].position, c[2].position, length, patches);
   }
   return patches;
 }
@@ -140,15 +183,17 @@ double wave_front(const Fluid& fluid) {
   return (fluid.particles.dim == 2 ? wave_front_in<2>(fluid) : wave_front_in<3>(fluid)) + fluid.spacing / 2;
 }
 
-double surface_height(const Fluid& fluid, coord at) {
+double surface_height(const Fluid& fluid, coord at, std::optional<coord> across) {
   const auto x = Read<CoordField>(fluid.particles.position);
   const int up = fluid.particles.dim - 1;
   const coord half = fluid.spacing / 2 * (1 + 1e-9);  // a lattice column beside x counts, whatever the round-off
+  const bool all = !across;
+  const coord y = across.value_or(0);
   coord top = std::numeric_limits<coord>::lowest();
   Kokkos::parallel_reduce(
       "greenwater::surface_height", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, coord& most) {
-        if (fabs(x(i, 0) - at) <= half) most = larger(most, x(i, up));
+        if (fabs(x(i, 0) - at) <= half && (all || fabs(x(i, 1) - y) <= half)) most = larger(most, x(i, up));
       },
       Kokkos::Max<coord>(top));
   return top + half;

@@ -24,14 +24,20 @@ class BodyForce : public Effect {
     if (fluid.body_force < 0) {
       fluid.body_force = add_extra(p, "body_force", "m/s^2");
       x_ = Kokkos::create_mirror(p.position);
+      u_ = Kokkos::create_mirror(p.velocity);
       f_ = Kokkos::create_mirror(p.extras[fluid.body_force].values);
     }
     const VectorField& values = p.extras[fluid.body_force].values;
     Kokkos::deep_copy(x_, p.position);
+    Kokkos::deep_copy(u_, p.velocity);
     for (int i = 0; i < p.count; ++i) {
-      double out[3] = {0, 0, 0};
-      force_(x_(i, 0), x_(i, 1), p.dim == 3 ? x_(i, 2) : 0, fluid.time, out);
-      for (int d = 0; d < p.dim; ++d) f_(i, d) = static_cast<real>(out[d]);
+      std::array<double, 3> x{}, u{};
+      for (int d = 0; d < p.dim; ++d) {
+        x[d] = x_(i, d);
+        u[d] = u_(i, d);
+      }
+      const auto f = force_(x, u, fluid.time);
+      for (int d = 0; d < p.dim; ++d) f_(i, d) = static_cast<real>(f[d]);
     }
     Kokkos::deep_copy(values, f_);
     p.dim == 2 ? add_in<2>(values, p.acceleration, p.count) : add_in<3>(values, p.acceleration, p.count);
@@ -40,7 +46,7 @@ class BodyForce : public Effect {
  private:
   ForceField force_;
   CoordField::host_mirror_type x_;
-  VectorField::host_mirror_type f_;
+  VectorField::host_mirror_type u_, f_;
 };
 
 }  // namespace

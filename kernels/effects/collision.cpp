@@ -5,13 +5,14 @@ namespace {
 
 // Calls f(j, n, speed) for each particle or image that i collides with: n points from i to it, speed is that of approach.
 template <int Dim, class F>
-KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& around, const Read<VectorField>& u, real distance,
+KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& near, const Read<VectorField>& u, real distance,
                                                int i, F f) {
   const auto ui = load<Dim>(u, i);
-  around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror* m) {
+  const real half = real(0.5);  // of two images at the edge of a corner the nearer one
+  near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
     const real r2 = dot(r, r);
-    if (r2 >= distance * distance || r2 <= 0) return;
-    const auto uj = m ? image_velocity(*m, load<Dim>(u, j)) : load<Dim>(u, j);
+    if (r2 >= distance * distance || r2 <= 0 || image.share < half) return;
+    const auto uj = image ? image.velocity(load<Dim>(u, j)) : load<Dim>(u, j);
     const real approach = dot(difference(ui, uj), r) / sqrt(r2);
     if (approach > 0) f(j, along(Vec<Dim>{}, 1 / sqrt(r2), r), approach);
   });
@@ -19,14 +20,14 @@ KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& around, const 
 
 template <int Dim>
 int count_collisions_in(const Fluid& fluid, real distance, const IndexField& number) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   int total = 0;
   Kokkos::parallel_reduce(
       "greenwater::count_collisions", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, int& sum) {
         int count = 0;
-        for_each_collision(around, u, distance, i, [&](int, const Vec<Dim>&, real) { ++count; });
+        for_each_collision(near, u, distance, i, [&](int, const Vec<Dim>&, real) { ++count; });
         number(i) = count;
         sum += count;
       },
@@ -38,13 +39,13 @@ int count_collisions_in(const Fluid& fluid, real distance, const IndexField& num
 // pairs has no eigenvalue above 2, so that kinetic energy never grows.
 template <int Dim>
 void collide_in(const Fluid& fluid, real distance, real restitution, const IndexField& number, const VectorField& du) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   Kokkos::parallel_for(
       "greenwater::collision", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         Vec<Dim> change{};
         if (number(i) > 0)
-          for_each_collision(around, u, distance, i, [&](const int j, const Vec<Dim>& n, const real approach) {
+          for_each_collision(near, u, distance, i, [&](const int j, const Vec<Dim>& n, const real approach) {
             const int share = number(i) > number(j) ? number(i) : number(j);
             change = along(change, -(1 + restitution) / 2 * approach / share, n);
           });

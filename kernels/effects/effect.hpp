@@ -15,9 +15,10 @@ namespace greenwater {
 
 enum class Stage {
   force,         // adds to the acceleration, at x and u of the step's start
+  walls,         // moves walls to where they are at the end of the step
   after_predict  // changes x* and u*; the rows are those of the last build, distances those of now
 };
-constexpr std::size_t stages = 2;
+constexpr std::size_t stages = 3;
 
 /// One optional piece of physics. Its name is its case-file key, its kernel label and its row in the time table.
 class Effect {
@@ -48,8 +49,8 @@ class Effects {
   std::array<std::vector<std::unique_ptr<Effect>>, stages> list_;
 };
 
-/// acceleration += nu (2 d / (lambda n^0)) sum_j (u_j - u_i) w_ij (Koshizuka and Oka 1996); walls slip freely.
-/// `kinematic`: nu [m^2/s].
+/// acceleration += nu (2 d / (lambda n^0)) sum_j (u_j - u_i) w_ij (Koshizuka and Oka 1996). At walls of bodies with
+/// no_slip an image moves with 2 u_w - u_j; at others the fluid slips freely. `kinematic`: nu [m^2/s].
 std::unique_ptr<Effect> make_viscosity(real kinematic);
 
 struct CollisionOptions {
@@ -62,10 +63,18 @@ struct CollisionOptions {
 /// move on with the change. A particle in several collisions at once takes the mean of them, so that no energy is made.
 std::unique_ptr<Effect> make_collision(const CollisionOptions& options);
 
-/// A force per mass at a place and time: f(x, y, z, t, out), out in m/s^2.
-using ForceField = std::function<void(double x, double y, double z, double t, double* out)>;
+/// A force per mass [m/s^2] at a place [m], for a velocity [m/s] and a time [s].
+using ForceField =
+    std::function<std::array<double, 3>(const std::array<double, 3>& x, const std::array<double, 3>& u, double t)>;
 
 /// Adds a force per mass to that of gravity, evaluated on the host for each particle and step.
 std::unique_ptr<Effect> make_body_force(ForceField force);
+
+/// Puts the corners of the faces where they are at a time [s]; velocities and accelerations are left alone.
+using WallMotion = std::function<void(WallFaces& faces, double t)>;
+
+/// Moves walls: a corner's velocity is its mean over the step, (x(t + dt) - x(t)) / dt, so that it goes as far as the
+/// fluid sees it go; its acceleration is (x(t + dt) - 2 x(t) + x(t - dt)) / dt^2.
+std::unique_ptr<Effect> make_moving_walls(WallMotion motion);
 
 }  // namespace greenwater

@@ -5,7 +5,7 @@ namespace {
 
 template <int Dim>
 void viscosity_in(const Fluid& fluid, real nu, const VectorField& a) {
-  const auto around = fluid.rows.around<Dim>(fluid.particles);
+  const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const auto w = fluid.laplacian.weight;
   const real factor = nu * 2 * Dim / (fluid.laplacian.reference.lambda * fluid.laplacian.reference.n0);
@@ -13,9 +13,9 @@ void viscosity_in(const Fluid& fluid, real nu, const VectorField& a) {
       "greenwater::viscosity", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
         const auto ui = load<Dim>(u, i);
         Vec<Dim> sum{};
-        around.for_each(i, [&](const int j, const Vec<Dim>& r, const Mirror* m) {
-          const auto uj = m ? image_velocity(*m, load<Dim>(u, j)) : load<Dim>(u, j);
-          const real weight = w(sqrt(dot(r, r)));
+        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
+          const auto uj = image ? image.sticking_velocity(load<Dim>(u, j)) : load<Dim>(u, j);
+          const real weight = image.share * w(sqrt(dot(r, r)));
           for (int d = 0; d < Dim; ++d) sum[d] += (uj[d] - ui[d]) * weight;
         });
         for (int d = 0; d < Dim; ++d) a(i, d) += factor * sum[d];
