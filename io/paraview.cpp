@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <numeric>
+#include <optional>
 
 #include "core/check.hpp"
 #include "io/file.hpp"
@@ -49,7 +50,7 @@ std::vector<std::int32_t> counting(std::size_t count, std::int32_t first) {
 }
 
 std::string particles(const Table& table) {
-  Vtp vtp(table.rows, table.rows, 0);
+  Vtp vtp({.points = table.rows, .verts = table.rows});
   vtp.add(Vtp::Section::field_data, "TimeValue", "Float64", 1, std::vector<double>{table.time});
   for (const Column& column : table.columns) {
     if (column.name == "position") {
@@ -63,6 +64,39 @@ std::string particles(const Table& table) {
   return vtp.text();
 }
 
+/// The cells of one section, as VTK has them: the points of each, one cell after the other, and where each ends.
+struct Cells {
+  std::vector<std::int32_t> connectivity, offsets;
+
+  void add(std::int32_t first_point, std::size_t corners) {
+    for (std::size_t i = 0; i < corners; ++i) connectivity.push_back(first_point + static_cast<std::int32_t>(i));
+    offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
+  }
+  void write(Vtp& vtp, Vtp::Section section) const {
+    vtp.add(section, "connectivity", "Int32", 1, connectivity);
+    vtp.add(section, "offsets", "Int32", 1, offsets);
+  }
+};
+
+std::string shapes(const std::vector<WallShape>& walls, std::optional<double> time) {
+  std::vector<float> points;
+  Cells lines, polys;
+  for (const WallShape& wall : walls) {
+    expect(wall.size() >= 2);
+    Cells& cells = wall.size() == 2 ? lines : polys;
+    cells.add(static_cast<std::int32_t>(points.size() / vtk_axes), wall.size());
+    for (const auto& corner : wall) {
+      for (const double coordinate : corner) points.push_back(static_cast<float>(coordinate));
+    }
+  }
+  Vtp vtp({.points = points.size() / vtk_axes, .lines = lines.offsets.size(), .polys = polys.offsets.size()});
+  if (time) vtp.add(Vtp::Section::field_data, "TimeValue", "Float64", 1, std::vector<double>{*time});
+  vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, points);
+  lines.write(vtp, Vtp::Section::lines);
+  polys.write(vtp, Vtp::Section::polys);
+  return vtp.text();
+}
+
 }  // namespace
 
 Paraview::Paraview(const std::filesystem::path& folder, const std::string& name) : folder_(folder), name_(name) {
@@ -70,28 +104,28 @@ Paraview::Paraview(const std::filesystem::path& folder, const std::string& name)
 }
 
 void Paraview::write(const Table& table) {
-  const std::string file = fmt::format("{0}/{0}_{1:06d}.vtp", name_, frames_);
   require_room(folder_, vtp_bytes(table));
-  write_atomically(folder_ / file, particles(table));
-  entries_ += fmt::format("<DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", table.time, file);
+  add(table.time, particles(table));
+}
+
+void Paraview::write(double time, const std::vector<WallShape>& walls) {
+  const std::string text = shapes(walls, time);
+  require_room(folder_, static_cast<double>(text.size()));
+  add(time, text);
+}
+
+void Paraview::add(double time, const std::string& text) {
+  const std::string file = fmt::format("{0}/{0}_{1:06d}.vtp", name_, frames_);
+  write_atomically(folder_ / file, text);
+  entries_ += fmt::format("<DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", time, file);
   write_atomically(folder_ / (name_ + ".pvd"),
                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n" + entries_ +
                        "</Collection>\n</VTKFile>\n");
   ++frames_;
 }
 
-void write_walls(const std::filesystem::path& path, const std::vector<Segment>& segments) {
-  std::vector<float> ends;
-  for (const Segment& segment : segments) {
-    for (const double coordinate : segment) ends.push_back(static_cast<float>(coordinate));
-  }
-  std::vector<std::int32_t> offsets(segments.size());
-  for (std::size_t i = 0; i < offsets.size(); ++i) offsets[i] = static_cast<std::int32_t>(2 * (i + 1));
-  Vtp vtp(2 * segments.size(), 0, segments.size());
-  vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, ends);
-  vtp.add(Vtp::Section::lines, "connectivity", "Int32", 1, counting(2 * segments.size(), 0));
-  vtp.add(Vtp::Section::lines, "offsets", "Int32", 1, offsets);
-  write_atomically(path, vtp.text());
+void write_walls(const std::filesystem::path& path, const std::vector<WallShape>& walls) {
+  write_atomically(path, shapes(walls, std::nullopt));
 }
 
 double vtp_bytes(const Table& table) {

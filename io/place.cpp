@@ -49,4 +49,11 @@ std::string complaint(const Place& place, const std::string& message) {
   return quotable ? text + quote(place) : text;
 }
 
+std::filesystem::path beside_case(const Place& place, const std::string& file) {
+  const bool is_option = place.file.rfind("--", 0) == 0;
+  const std::filesystem::path folder =
+      is_option ? std::filesystem::path() : std::filesystem::path(place.file).parent_path();
+  return folder / file;  // an absolute `file` replaces the folder
+}
+
 }  // namespace greenwater

@@ -1,6 +1,7 @@
 #pragma once
 // Where in the input something stands, and complaints that point at it.
 
+#include <filesystem>
 #include <iosfwd>
 #include <memory>
 #include <string>
@@ -23,6 +24,10 @@ std::ostream& operator<<(std::ostream& out, const Place& place);
 
 /// `file:line:column: error: message`, then the source line and a line of carets below it.
 std::string complaint(const Place& place, const std::string& message);
+
+/// A file that the case names: beside the case file where it is relative, or beside the working folder where it was
+/// named by an option.
+std::filesystem::path beside_case(const Place& place, const std::string& file);
 
 /// Throws CaseError with complaint() of the pieces.
 template <class... Parts>

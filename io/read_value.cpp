@@ -97,15 +97,16 @@ Point read_point(const CaseNode& node, const std::string& key, const std::string
   return point;
 }
 
+std::string read_formula(const CaseNode& node, const std::string& key, const std::string& unit) {
+  require_at(node.place, node.is_number() || node.kind == CaseNode::Kind::text, key,
+             " must be a number or a formula in quotes", in_unit(unit), ", not ", kind_name(node.kind));
+  return node.kind == CaseNode::Kind::text ? node.text : toml_number(read_number(node, key, unit, any_number));
+}
+
 Formulas read_formulas(const CaseNode& node, const std::string& key, const std::string& unit, int dimension) {
   Formulas texts{"0", "0", "0"};
   const auto& items = components(node, key, unit, dimension);
-  for (std::size_t d = 0; d < items.size(); ++d) {
-    const CaseNode& item = items[d];
-    require_at(item.place, item.is_number() || item.kind == CaseNode::Kind::text, key,
-               " must hold numbers or formulas in quotes", in_unit(unit), ", not ", kind_name(item.kind));
-    texts[d] = item.kind == CaseNode::Kind::text ? item.text : toml_number(read_number(item, key, unit, any_number));
-  }
+  for (std::size_t d = 0; d < items.size(); ++d) texts[d] = read_formula(items[d], key, unit);
   return texts;
 }
 

@@ -17,6 +17,7 @@ bool read_flag(const CaseNode& node, const std::string& key);
 std::string read_text(const CaseNode& node, const std::string& key);
 std::string read_choice(const CaseNode& node, const std::string& key, const Words& allowed);
 Point read_point(const CaseNode& node, const std::string& key, const std::string& unit, int dimension);
+std::string read_formula(const CaseNode& node, const std::string& key, const std::string& unit);
 Formulas read_formulas(const CaseNode& node, const std::string& key, const std::string& unit, int dimension);
 
 }  // namespace greenwater

@@ -78,10 +78,34 @@ void write_column(const Place5& group, const Column& column, std::size_t rows, P
   hdf5_done(data.close(), group.path, what);
 }
 
+/// The corners of all walls, one row each.
+Table corners(const std::vector<WallShape>& walls) {
+  std::vector<std::int64_t> wall;
+  std::vector<double> position;
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    for (const auto& corner : walls[k]) {
+      wall.push_back(static_cast<std::int64_t>(k));
+      position.insert(position.end(), corner.begin(), corner.end());
+    }
+  }
+  Table table{"walls", 0, 0, wall.size(), {}};
+  table.columns = {{"wall", "-", 1, std::move(wall)}, {"position", "m", 3, std::move(position)}};
+  return table;
+}
+
+void write_group(hid_t parent, const Table& table, const fs::path& path, Precision precision) {
+  const std::string what = "group " + table.name + " cannot be written";
+  Hdf5Handle group =
+      hdf5_made(H5Gcreate2(parent, table.name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path, what);
+  for (const Column& column : table.columns) write_column({group.id(), path}, column, table.rows, precision);
+  hdf5_done(group.close(), path, what);
+}
+
 /// The frame is made without a name, brought to disk, and only then linked. Until then only the end of the file grows,
 /// behind what is in use: a run that is killed meanwhile leaves all earlier frames. What remains are the microseconds
 /// of the link itself (measured: one damaged file in 400 kills of a program that did nothing but write frames).
-void append(hid_t file, const Table& table, const std::string& name, const fs::path& path, Precision precision) {
+void append(hid_t file, const Table& table, const Table& walls, const std::string& name, const fs::path& path,
+            Precision precision) {
   const std::string what = "frame " + name + " cannot be written";
   Hdf5Handle group = hdf5_made(H5Gcreate_anon(file, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path, what);
   const Place5 place{group.id(), path};
@@ -90,6 +114,7 @@ void append(hid_t file, const Table& table, const std::string& name, const fs::p
   write_text(place, "name", table.name);
   write_text(place, "time_unit", "s");
   for (const Column& column : table.columns) write_column(place, column, table.rows, precision);
+  if (walls.rows > 0) write_group(group.id(), walls, path, precision);
   hdf5_done(H5Fflush(file, H5F_SCOPE_LOCAL), path, what);
   hdf5_done(H5Olink(group.id(), file, ("frames/" + name).c_str(), H5P_DEFAULT, H5P_DEFAULT), path, what);
   hdf5_done(group.close(), path, what);
@@ -111,12 +136,14 @@ Results::Results(const fs::path& path, const ResultsOrigin& origin, Precision pr
   hdf5_done(file.close(), path, "cannot be closed");
 }
 
-void Results::write(const Table& table) {
+void Results::write(const Table& table, const std::vector<WallShape>& walls) {
   constexpr double overhead = 1e5;  // bytes of a frame's headers, generously
-  require_room(path_.parent_path(), stored_bytes(table, precision_) + overhead);
+  const Table wall_corners = corners(walls);
+  require_room(path_.parent_path(),
+               stored_bytes(table, precision_) + stored_bytes(wall_corners, precision_) + overhead);
   Hdf5Handle file = hdf5_made(H5Fopen(path_.c_str(), H5F_ACC_RDWR, hdf5_access(path_).id()), H5Fclose, path_,
                               "cannot be opened for the next frame");
-  append(file.id(), table, fmt::format("{:06d}", frames_), path_, precision_);
+  append(file.id(), table, wall_corners, fmt::format("{:06d}", frames_), path_, precision_);
   hdf5_done(file.close(), path_, "cannot be closed after a frame");
   ++frames_;
 }

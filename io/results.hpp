@@ -2,6 +2,7 @@
 // results.h5: the frames of a run. Layout, for h5py and the like:
 //   /                 attributes: program, version, git, kokkos, backend, command_line, created, case (its whole text)
 //   /frames/000000/   attributes: time [s], step, name; one data set per column, each with its unit as an attribute
+//   /frames/000000/walls/   only where walls move: a row for each corner; position, and wall, the number of its wall
 // The file is closed between frames, so that a killed run leaves it readable, with every frame written before.
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "core/table.hpp"
+#include "core/wall_shape.hpp"
 
 namespace greenwater {
 
@@ -26,9 +28,9 @@ class Results {
   /// Creates the file with its origin and an empty /frames. Throws FileError.
   Results(const std::filesystem::path& path, const ResultsOrigin& origin, Precision precision);
 
-  /// Appends a frame; real columns are stored in the file's precision. Throws FileError with the cause (disk full ...);
-  /// what was written before stays readable.
-  void write(const Table& table);
+  /// Appends a frame, with the walls where they are now if any are given; real columns are stored in the file's
+  /// precision. Throws FileError with the cause (disk full ...); what was written before stays readable.
+  void write(const Table& table, const std::vector<WallShape>& walls = {});
 
   std::int64_t frames() const { return frames_; }
   const std::filesystem::path& path() const { return path_; }

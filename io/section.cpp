@@ -90,6 +90,7 @@ std::string Section::choice(const std::string& key, const Words& allowed, const 
 Words Section::choices(const std::string& key, const Words& allowed, const Preset<Words>& preset) {
   const auto read = [&](const CaseNode& node) {
     Words words;
+    if (node.kind == CaseNode::Kind::text) return Words{read_choice(node, key, allowed)};
     for (const CaseNode& item : items_of(node, key)) words.push_back(read_choice(item, key, allowed));
     return words;
   };
@@ -115,6 +116,23 @@ std::vector<Point> Section::points(const std::string& key, const std::string& un
     return toml_list(items);
   };
   return answer(key, unit, preset, read, print);
+}
+
+std::filesystem::path Section::file(const std::string& key, const std::string& shown) {
+  const CaseNode* node = ask(key);
+  if (!node) missing(key, "", toml_text(shown));
+  const std::string name = read_text(*node, key);
+  require_at(node->place, !name.empty(), key, " is empty: it names a file");
+  const std::filesystem::path path = beside_case(node->place, name);
+  const std::string whole = std::filesystem::absolute(path).lexically_normal().string();
+  table_->values.push_back({key, toml_text(whole), "", node->origin});
+  return path;
+}
+
+std::string Section::formula(const std::string& key, const std::string& unit, const Preset<std::string>& preset) {
+  return answer(
+      key, unit, preset, [&](const CaseNode& node) { return read_formula(node, key, unit); },
+      [](const std::string& value) { return toml_text(value); });
 }
 
 Formulas Section::formulas(const std::string& key, const std::string& unit, int dimension,
@@ -164,6 +182,11 @@ std::vector<std::pair<std::string, Section>> Section::named(const std::string& k
 }
 
 bool Section::has(const std::string& key) const { return find(key) != nullptr; }
+
+bool Section::offers(const std::string& key) {
+  table_->ask(key);
+  return has(key);
+}
 
 Place Section::place() const { return place_of(*table_); }
 

@@ -3,6 +3,7 @@
 // SI, and is remembered: what nobody asked for is a misspelt key, what was answered is the resolved case.
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <optional>
 #include <string>
@@ -55,13 +56,19 @@ class Section {
   bool flag(const std::string& key, const Preset<bool>& preset);
   std::string text(const std::string& key, const Preset<std::string>& preset);
   std::string choice(const std::string& key, const Words& allowed, const Preset<std::string>& preset);
+  /// A list of words; a word alone is a list of one.
   Words choices(const std::string& key, const Words& allowed, const Preset<Words>& preset);
+  /// A file that must be named: beside the case where it is relative. The resolved case has its whole path, because it
+  /// lies elsewhere. `shown`: for the complaint when it is missing.
+  std::filesystem::path file(const std::string& key, const std::string& shown);
 
   /// `dimension` numbers, each also as a quantity; the rest of the point is 0.
   Point vector(const std::string& key, const std::string& unit, int dimension, const Preset<Point>& preset);
   std::vector<Point> points(const std::string& key, const std::string& unit, int dimension,
                             const Preset<std::vector<Point>>& preset);
-  /// `dimension` numbers or formulas as texts; they are not looked at here.
+  /// A number, or a formula as a text, which is not looked at here.
+  std::string formula(const std::string& key, const std::string& unit, const Preset<std::string>& preset);
+  /// `dimension` of them.
   Formulas formulas(const std::string& key, const std::string& unit, int dimension, const Preset<Formulas>& preset);
 
   /// A table inside this one; absent ones answer too.
@@ -74,6 +81,8 @@ class Section {
   std::vector<std::pair<std::string, Section>> named(const std::string& key);
 
   bool has(const std::string& key) const;
+  /// As has(), for a key that may be left out: it counts as known where others are misspelt.
+  bool offers(const std::string& key);
   std::string header() const { return table_->header(); }
   Place place() const;                        ///< of the table
   Place place(const std::string& key) const;  ///< of the key's value; of the table when the key is absent

@@ -106,6 +106,8 @@ std::string cure(const std::string& fault, const std::string& line) {
   if (lonely_point(value, 1)) return "; write a digit after the point: 5.0, not 5.";
   if (starts_with_word(value)) return "; a text needs quotes: key = \"text\"";
   if (std::count(line.begin(), line.end(), '"') % 2 == 1) return "; a closing quote is missing";
+  if (fault.find("end-of-file") != std::string::npos)
+    return "; the file ends here: is it whole? close the bracket, or copy the rest again";
   return {};
 }
 

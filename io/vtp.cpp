@@ -8,8 +8,6 @@ namespace greenwater {
 
 static_assert(std::endian::native == std::endian::little, "the header of the file says LittleEndian");
 
-Vtp::Vtp(std::size_t points, std::size_t verts, std::size_t lines) : points_(points), verts_(verts), lines_(lines) {}
-
 void Vtp::declare(Section section, const std::string& name, const char* type, int components, std::size_t values) {
   const bool field = section == Section::field_data;
   const std::string shape = field ? fmt::format("NumberOfTuples=\"{}\"", values / static_cast<std::size_t>(components))
@@ -31,11 +29,13 @@ std::string Vtp::text() const {
       "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<PolyData>\n"
       "<FieldData>\n{}</FieldData>\n"
       "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" "
-      "NumberOfPolys=\"0\">\n"
+      "NumberOfPolys=\"{}\">\n"
       "<PointData>\n{}</PointData>\n<Points>\n{}</Points>\n<Verts>\n{}</Verts>\n<Lines>\n{}</Lines>\n"
+      "<Polys>\n{}</Polys>\n"
       "</Piece>\n</PolyData>\n<AppendedData encoding=\"raw\">\n_",
-      section(Section::field_data), points_, verts_, lines_, section(Section::point_data), section(Section::points),
-      section(Section::verts), section(Section::lines));
+      section(Section::field_data), counts_.points, counts_.verts, counts_.lines, counts_.polys,
+      section(Section::point_data), section(Section::points), section(Section::verts), section(Section::lines),
+      section(Section::polys));
   text += data_;
   text += "\n</AppendedData>\n</VTKFile>\n";
   return text;

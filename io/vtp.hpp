@@ -11,9 +11,12 @@ namespace greenwater {
 /// Collects the arrays of one PolyData piece, then prints the file. Arrays are copied in: one frame at a time.
 class Vtp {
  public:
-  enum class Section { field_data, point_data, points, verts, lines };
+  enum class Section { field_data, point_data, points, verts, lines, polys };
+  struct Counts {
+    std::size_t points = 0, verts = 0, lines = 0, polys = 0;
+  };
 
-  Vtp(std::size_t points, std::size_t verts, std::size_t lines);
+  explicit Vtp(const Counts& counts) : counts_(counts) {}
 
   /// `type` is VTK's name: Float32, Int32 ... ; `values` are written as they are.
   template <class T>
@@ -30,8 +33,8 @@ class Vtp {
   void declare(Section section, const std::string& name, const char* type, int components, std::size_t values);
   void append(const char* first, std::size_t bytes);
 
-  std::size_t points_, verts_, lines_;
-  std::string sections_[5];
+  Counts counts_;
+  std::string sections_[6];
   std::string data_;
 };
 
