@@ -1,13 +1,11 @@
 #pragma once
 // From the typed case to fields, walls, effects and schemes: the only place that maps words to classes.
 
-#include "app/scene.hpp"
+#include "app/build_walls.hpp"
+#include "app/motion.hpp"
 #include "app/scheme.hpp"
 
 namespace greenwater {
-
-/// All faces of the scene's geometries, with their names; stretches that lie on one line and touch are one face.
-WallFaces build_walls(const Scene& scene);
 
 /// Particles on the lattice inside the fluid's region (not inside plates), walls, grid, weights; rows built.
 /// Throws CaseError when there is no particle or not the expected number of them.
@@ -22,10 +20,7 @@ std::unique_ptr<Scheme> build_scheme(const Scene& scene);
 /// probe faces; a box faces its inside by itself. Throws CaseError on any other wall when the case does not say.
 Point pressure_point(const Scene& scene, const WallFaces& walls, const ProbeCase& probe);
 
-/// Lowest and highest corner of walls and fluid [m].
-struct Extent {
-  Point low, high;
-};
-Extent scene_extent(const Scene& scene, const WallFaces& walls);
+/// The motion with which a pressure probe goes: that of the wall its point is on; null when none moves it.
+std::unique_ptr<Motion> motion_of(const Scene& scene, const WallFaces& walls, const ProbeCase& probe);
 
 }  // namespace greenwater

@@ -43,7 +43,7 @@ std::vector<Fact> facts() {
           number("processors", machine_processors()),
           number("memory_bytes", machine_memory()),
           number("most_particles", std::numeric_limits<int>::max()),
-          words("dimensions", "2")};
+          words("dimensions", "2 3")};
 }
 
 }  // namespace

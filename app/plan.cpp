@@ -7,15 +7,19 @@
 #include <limits>
 #include <numbers>
 
+#include "app/motion.hpp"
+#include "app/scene_shape.hpp"
+
 namespace greenwater {
 namespace {
 
 // Bytes per particle, counted from the fields: state and scratch of the sort (150), the solver's vectors (50), grid and
-// row ends (50), host copies for a frame (100); rounded up.
-constexpr double bytes_per_particle = 400;
+// row ends (50), host copies for a frame (100); rounded up. A third axis adds eight bytes to each of eight vectors.
+constexpr double bytes_per_particle = 400, bytes_of_third_axis = 64;
 constexpr double bytes_per_neighbor = 4, bytes_per_weight = 8;
 constexpr double row_growth = 1.5;                           // rows grow ahead of need
 constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
+constexpr double frame_bytes_third_axis = 8;                 // of position and velocity; VTP has three always
 
 double largest_radius(const MpsCase& mps) {
   return std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
@@ -26,13 +30,15 @@ double memory_of(const Scene& scene, double particles) {
   const double neighbors =
       scene.dimension == 2 ? std::numbers::pi * radius * radius : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   const double entry = bytes_per_neighbor + (scene.mps.pressure.weights == "kept" ? bytes_per_weight : 0);
-  return particles * (bytes_per_particle + row_growth * neighbors * entry);
+  const double fields = bytes_per_particle + (scene.dimension == 3 ? bytes_of_third_axis : 0);
+  return particles * (fields + row_growth * neighbors * entry);
 }
 
 double disk_of(const Scene& scene, double particles, double frames) {
   const double real_scale = scene.output.precision == "float64" ? 2 : 1;
   const double vtp = scene.output.paraview.empty() ? 0 : frame_bytes_vtp;
-  return frames * particles * (frame_bytes_h5 * real_scale + vtp);
+  const double h5 = frame_bytes_h5 + (scene.dimension == 3 ? frame_bytes_third_axis : 0);
+  return frames * particles * (h5 * real_scale + vtp);
 }
 
 /// Two figures, rounded down: a suggestion to type.
@@ -59,7 +65,70 @@ void warn_of_output(const Scene& scene, Plan& plan) {
   }
 }
 
+void warn_of_meshes(const Scene& scene, Plan& plan) {
+  for (const MeshCase& mesh : scene.meshes)
+    for (const std::string& repair : mesh.repairs)
+      plan.warnings.push_back(fmt::format("mesh {}: {}", mesh.name, repair));
+}
+
+/// Shared by warnings about what lies in what.
+bool within(const Point& x, const Corners& room, double slack, int dimension) {
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d) {
+    if (x[d] < room.min[d] - slack || x[d] > room.max[d] + slack) return false;
+  }
+  return true;
+}
+
+void warn_of_motion(const Scene& scene, Plan& plan) {
+  const double slack = scene.mps.spacing;
+  const auto shapes = shapes_of(scene);
+  for (const Shape& moving : shapes) {
+    if (!moving.geometry->motion) continue;
+    const std::string& name = moving.geometry->name;
+    const auto step = longest_step(Motion(*moving.geometry->motion), scene.end, scene.mps.time_step, reach_of(moving));
+    const double cfl = step.way / scene.mps.spacing;
+    if (cfl > scene.mps.cfl_warn)
+      plan.warnings.push_back(
+          fmt::format("{} moves {:.2f} x spacing in the step at t = {:.4g} s, cfl_warn is {:.2g} -> mps.time_step",
+                      name, cfl, step.time, scene.mps.cfl_warn));
+    for (const Shape& inner : shapes) {
+      const bool holds = within(inner.bounds.min, moving.bounds, slack, scene.dimension) &&
+                         within(inner.bounds.max, moving.bounds, slack, scene.dimension);
+      if (&inner != &moving && holds && !inner.geometry->motion)
+        plan.warnings.push_back(fmt::format("{} moves and {} in it does not -> the same motion in [geometry.{}.motion]",
+                                            name, inner.geometry->name, inner.geometry->name));
+    }
+  }
+}
+
+void warn_of_probes(const Scene& scene, Plan& plan) {
+  const auto shapes = shapes_of(scene);
+  if (shapes.empty()) return;
+  Corners room{scene.fluid.min, scene.fluid.max};
+  for (const Shape& shape : shapes) {
+    for (std::size_t d = 0; d < 3; ++d) {
+      room.min[d] = std::min(room.min[d], shape.bounds.min[d]);
+      room.max[d] = std::max(room.max[d], shape.bounds.max[d]);
+    }
+  }
+  for (const ProbeCase& probe : scene.probes) {
+    Point at = room.min;
+    if (probe.kind == "wall_pressure") at = probe.point;
+    if (probe.kind == "surface_height") at[0] = probe.x;
+    if (probe.kind == "surface_height" && probe.y) at[1] = *probe.y;
+    if (!within(at, room, scene.mps.spacing, scene.dimension))
+      plan.warnings.push_back(fmt::format("probe {} is outside of all walls and water", probe.name));
+  }
+}
+
 }  // namespace
+
+double front_cfl(const Scene& scene) {
+  const std::size_t up = static_cast<std::size_t>(scene.dimension) - 1;
+  const Point& g = scene.gravity;
+  const double height = scene.fluid.max[up] - scene.fluid.min[up];
+  return 2 * std::sqrt(std::hypot(g[0], g[1], g[2]) * height) * scene.mps.time_step / scene.mps.spacing;
+}
 
 std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int dimension) {
   constexpr double round_off = 1e-6;  // of a cell: 0.4 / 0.001 is not quite 400
@@ -74,17 +143,20 @@ Plan plan_of(const Scene& scene) {
   Plan plan;
   const auto cells = lattice_cells(scene.fluid, scene.mps.spacing, scene.dimension);
   plan.particles = cells[0] * cells[1] * cells[2];
+  plan.at_most =
+      !scene.fluid.inside.empty() &&
+      std::none_of(scene.boxes.begin(), scene.boxes.end(), [&](const auto& b) { return b.name == scene.fluid.inside; });
   plan.steps = std::ceil(scene.end / scene.mps.time_step * (1 - 1e-12));
   plan.frames = scene.output.every_time > 0
                     ? std::min(std::floor(scene.end / scene.output.every_time + 1e-9), plan.steps) + 1
                     : 0;
   plan.memory = memory_of(scene, plan.particles);
   plan.disk = disk_of(scene, plan.particles, plan.frames);
-  const Point& g = scene.gravity;
-  const double gravity = std::hypot(g[0], g[1], g[2]);
-  const double height = scene.fluid.max[1] - scene.fluid.min[1];
-  plan.cfl = 2 * std::sqrt(gravity * height) * scene.mps.time_step / scene.mps.spacing;
+  plan.cfl = front_cfl(scene);
+  warn_of_meshes(scene, plan);
   warn_of_speed(scene, plan);
+  warn_of_motion(scene, plan);
+  warn_of_probes(scene, plan);
   warn_of_output(scene, plan);
   return plan;
 }
@@ -106,8 +178,9 @@ void require_memory(const Plan& plan, double memory, const Scene& scene) {
 
 std::vector<std::string> plan_lines(const Plan& plan, const Scene& scene) {
   std::vector<std::string> lines{
-      fmt::format("fluid     {}: {:.0f} particles, spacing {:.6g} m, dt {:.6g} s, cfl {:.2f} at the front",
-                  scene.fluid.name, plan.particles, scene.mps.spacing, scene.mps.time_step, plan.cfl),
+      fmt::format("fluid     {}: {}{:.0f} particles, spacing {:.6g} m, dt {:.6g} s, cfl {:.2f} at the front",
+                  scene.fluid.name, plan.at_most ? "at most " : "", plan.particles, scene.mps.spacing,
+                  scene.mps.time_step, plan.cfl),
       fmt::format("plan      {:.0f} steps, {:.0f} frames, {:.2g} GB disk, {:.2g} GB memory (estimates)", plan.steps,
                   plan.frames, plan.disk / 1e9, plan.memory / 1e9)};
   for (const std::string& warning : plan.warnings) lines.push_back("warning   " + warning);

@@ -10,14 +10,18 @@ namespace greenwater {
 
 struct Plan {
   double particles = 0, steps = 0, frames = 0;  // as double: a wrong spacing must not overflow them
+  bool at_most = false;                         // the count is that of the bounds of what is filled
   double memory = 0;                            // [bytes], estimated
   double disk = 0;                              // [bytes], estimated
   double cfl = 0;                               // of the front of a collapse, 2 sqrt(g H) dt / spacing [-]
   std::vector<std::string> warnings;
 };
 
-/// The cells of the fluid's lattice along x, y, z; their product is the particle count.
+/// The cells of the fluid's lattice along x, y, z; their product is the particle count, where the region is a box.
 std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int dimension);
+
+/// How many particle distances the front of a collapse runs in one step: 2 sqrt(g H) dt / spacing.
+double front_cfl(const Scene& scene);
 
 Plan plan_of(const Scene& scene);
 

@@ -72,7 +72,11 @@ void Recorder::open_frames(Simulation& simulation) {
   results_ = std::make_unique<Results>(folder_.path() / "results.h5", origin, precision_of(scene_.output));
   if (!paraview_wanted_) return;
   paraview_ = std::make_unique<Paraview>(folder_.path() / "paraview", scene_.fluid.name);
-  write_walls(folder_.path() / "paraview" / "walls.vtp", simulation.wall_segments());
+  if (simulation.walls_move()) {
+    moving_walls_ = std::make_unique<Paraview>(folder_.path() / "paraview", "walls");
+  } else {
+    write_walls(folder_.path() / "paraview" / "walls.vtp", simulation.wall_shapes());
+  }
 }
 
 void Recorder::history(const StepFacts& facts, double ms_per_step) { history_.row(history_row(facts, ms_per_step)); }
@@ -92,8 +96,10 @@ void Recorder::sample(Simulation& simulation) {
 
 void Recorder::frame(Simulation& simulation) {
   const Table table = simulation.fluid_table();
-  results_->write(table);
+  const std::vector<WallShape> moving = simulation.walls_move() ? simulation.wall_shapes() : std::vector<WallShape>();
+  results_->write(table, moving);
   if (paraview_) paraview_->write(table);
+  if (moving_walls_) moving_walls_->write(table.time, moving);
   last_frame_step_ = simulation.steps();
 }
 

@@ -61,7 +61,7 @@ class Recorder {
   bool frames_wanted_, paraview_wanted_;
   Schedule frame_schedule_;
   std::unique_ptr<Results> results_;
-  std::unique_ptr<Paraview> paraview_;
+  std::unique_ptr<Paraview> paraview_, moving_walls_;
   std::int64_t last_frame_step_ = -1;
 };
 

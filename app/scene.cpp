@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cctype>
 
-#include "app/formula.hpp"
 #include "app/scene_parts.hpp"
 
 namespace greenwater {
@@ -22,32 +21,24 @@ void read_case(Section section, Scene& scene) {
   scene.title = section.text("title", std::string());
   scene.reference = section.text("reference", std::string());
   const std::int64_t dimension = section.count("dimension", 1, std::int64_t{2});
-  require_at(section.place("dimension"), dimension == 2, "this version runs dimension = 2, not ", dimension);
+  require_at(section.place("dimension"), dimension == 2 || dimension == 3, "dimension must be 2 or 3, not ", dimension);
   scene.dimension = static_cast<int>(dimension);
 }
 
 void read_time(Section section, Scene& scene) {
   scene.end = section.number("end", "s", positive, example(0.5));
-  scene.gravity = section.vector("gravity", "m/s^2", scene.dimension, Point{0, -9.81, 0});
+  const Point down = scene.dimension == 2 ? Point{0, -9.81, 0} : Point{0, 0, -9.81};
+  scene.gravity = section.vector("gravity", "m/s^2", scene.dimension, down);
 }
 
 void read_domain(Section& root, Scene& scene) {
   auto section = root.table_if_present("domain");
   if (!section) return;
-  const Corners corners = read_corners(*section, scene.dimension, {{-1, -1, 0}, {2, 2, 0}});
+  const Corners corners = read_corners(*section, scene.dimension, {{-1, -1, -1}, {2, 2, 2}});
   scene.has_domain = true;
   scene.domain_min = corners.min;
   scene.domain_max = corners.max;
   scene.domain_place = section->place();
-}
-
-void check_times(const Scene& scene) {
-  constexpr double most_steps = 1e12;
-  require_at(scene.mps.time_step_place, scene.mps.time_step <= scene.end, "mps.time_step = ", scene.mps.time_step,
-             " s is longer than the run, time.end = ", scene.end, " s");
-  require_at(scene.mps.time_step_place, scene.end / scene.mps.time_step < most_steps,
-             "mps.time_step = ", scene.mps.time_step, " s makes more than 1e12 steps of time.end = ", scene.end,
-             " s; take a longer step");
 }
 
 }  // namespace
@@ -74,13 +65,26 @@ void require_safe_name(const std::string& name, const Place& place, const std::s
              " becomes part of file names: use letters, digits, '_', '-' and '.', at most ", longest);
 }
 
-VectorFormula read_formulas(Section& section, const std::string& key, const std::string& unit, int dimension,
-                            const Preset<Formulas>& preset) {
+VectorFormula read_formulas(Section& section, const FormulaWish& wish, int dimension) {
   VectorFormula vector;
-  vector.text = section.formulas(key, unit, dimension, preset);
-  vector.place = section.place(key);
-  compile(vector.text, vector.place);
+  vector.text = section.formulas(wish.key, wish.unit, dimension, wish.preset);
+  vector.place = section.place(wish.key);
+  compile(vector.text, vector.place, wish.variables);
   return vector;
+}
+
+std::vector<std::string> box_sides(int dimension) {
+  return dimension == 2 ? Words{"left", "right", "bottom", "top"}
+                        : Words{"left", "right", "front", "back", "bottom", "top"};
+}
+
+std::vector<std::string> wall_names(const Scene& scene) {
+  Words names;
+  for (const BoxCase& box : scene.boxes) names.push_back(box.name);
+  for (const PolylineCase& line : scene.polylines) names.push_back(line.name);
+  for (const PlateCase& plate : scene.plates) names.push_back(plate.name);
+  for (const MeshCase& mesh : scene.meshes) names.push_back(mesh.name);
+  return names;
 }
 
 Scene read_scene(CaseFile& file) {
@@ -92,12 +96,11 @@ Scene read_scene(CaseFile& file) {
   read_domain(root, scene);
   read_geometry(root, scene);
   read_fluid(root, scene);
-  read_mps(root.table("mps"), scene.mps);
+  read_mps(root.table("mps"), scene);
   if (auto effects = root.table_if_present("effects")) read_effects(*effects, scene);
   read_output(root.table("output"), scene.output);
   read_probes(root, scene);
   file.finish();
-  check_times(scene);
   check_scene(scene);
   return scene;
 }

@@ -3,40 +3,80 @@
 // read_scene(), the only place that knows the keys; turned into fields and kernels by build.cpp.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/triangle_mesh.hpp"
 #include "io/case_file.hpp"
 
 namespace greenwater {
 
-/// A vector whose components are numbers or formulas in x, y, z [m] and t [s].
+/// A number or a formula in t [s].
+struct NumberFormula {
+  std::string text = "0";
+  Place place;
+};
+
+/// A vector whose components are numbers or formulas; which variables they know, stands where it is used.
 struct VectorFormula {
   Formulas text{"0", "0", "0"};
   Place place;
 };
 
-struct BoxCase {  // a tank: walls on its sides but the open ones
-  std::string name;
-  Place place;
-  Point min, max;                 // [m]
-  std::vector<std::string> open;  // left right bottom top (3-D: also front back)
+/// Numbers over time, straight lines between the rows; before the first row and after the last the value stays.
+struct TimeTable {
+  Place place;                             // where the case names its file
+  std::vector<double> time;                // [s], ascending
+  std::vector<std::vector<double>> value;  // as many columns as were asked for
 };
 
-struct PolylineCase {  // connected straight walls; fluid on either side or on both
+/// How a geometry moves as a rigid body: x(t) = about + R(rotation(t)) (x(0) - about) + displacement(t). At t = 0 it is
+/// where the case puts it; before that it was at rest. Formulas are in t. Of the four translations one at most is there,
+/// of the two rotations one at most, of all of them one at least. Motion (app/motion.hpp) evaluates it.
+struct MotionCase {
+  Place place;
+  std::optional<VectorFormula> displacement;  // [m]
+  std::optional<TimeTable> displacement_table;
+  std::optional<VectorFormula> velocity;  // [m/s], instead of a displacement
+  std::optional<TimeTable> velocity_table;
+  std::optional<NumberFormula> rotation;  // [rad] round `axis` by the right-hand rule; 2-D: anti-clockwise
+  std::optional<TimeTable> rotation_table;
+  Point about{};        // [m]
+  Point axis{0, 0, 1};  // 3-D only; any length
+};
+
+/// What all geometries have.
+struct GeometryCase {
   std::string name;
   Place place;
-  std::vector<Point> points;  // [m]
+  std::optional<MotionCase> motion;
+};
+
+struct BoxCase : GeometryCase {   // a tank: walls on its sides but the open ones
+  Point min, max;                 // [m]
+  std::vector<std::string> open;  // of box_sides(): left is at min x, front at min y, bottom at min of the last axis
+};
+
+struct PolylineCase : GeometryCase {  // 2-D: connected straight walls; fluid on either side or on both
+  std::vector<Point> points;          // [m]; typed, or read from a CSV file
   bool closed = false;
 };
 
-struct PlateCase {  // a rigid plate that stands on its base, wet on both sides; its free end is open
-  std::string name;
-  Place place;
+/// A rigid plate that stands on its base, wet on both sides; its free ends are open. In 3-D it is a rectangle that spans
+/// `width` along y, half of it on either side of its base.
+struct PlateCase : GeometryCase {
   Point base;                        // [m] foot point
   std::string base_side = "centre";  // where the foot point is: upstream (-x face) | centre | downstream
   double height = 0, thickness = 0;  // [m]; thickness 0 is allowed
+  double width = 0;                  // [m] 3-D only
   double angle = 0;                  // [rad] from the vertical, positive leans downstream (+x)
+};
+
+struct MeshCase : GeometryCase {     // 3-D: walls from an STL file
+  TriangleMesh mesh;                 // [m], scaled, moved, checked, and repaired where the case allows it
+  bool closed = false;               // it has an inside
+  std::vector<std::string> repairs;  // what was mended, in words; for the plan
 };
 
 struct FluidCase {
@@ -44,11 +84,14 @@ struct FluidCase {
   Place place;             // of its region
   double density = 1000;   // rho [kg/m^3]
   Point min, max;          // [m] box filled with particles at the cell centres of a lattice of the spacing
-  VectorFormula velocity;  // [m/s] initial
+  std::string inside;      // or: the inside of this geometry (box, closed polyline, closed mesh) ...
+  double level = 0;        // ... up to this height [m] along the last axis; min, max are then its bounds
+  VectorFormula velocity;  // [m/s] initial, in x, y, z
 };
 
 struct ViscosityCase {
-  double kinematic = 0;  // nu [m^2/s]
+  double kinematic = 0;              // nu [m^2/s]
+  std::vector<std::string> no_slip;  // names of the geometries at which water sticks; at others it slips
 };
 
 struct CollisionCase {
@@ -58,7 +101,7 @@ struct CollisionCase {
 };
 
 struct BodyForceCase {
-  VectorFormula acceleration;  // [m/s^2], added to gravity
+  VectorFormula acceleration;  // [m/s^2], added to gravity; may use the velocity u, v, w [m/s] beside x, y, z, t
 };
 
 struct PressureCase {
@@ -82,7 +125,7 @@ struct MpsCase {
   double cfl_warn = 0.5;
   std::string kernel = "koshizuka_shifted";  // koshizuka_shifted (Eq. 3) | standard (re/r - 1)
   double kernel_shift = 0.05;                // the 0.05 of Eq. 3
-  double radius_density = 3.1, radius_gradient = 3.1, radius_laplacian = 3.1;  // x spacing
+  double radius_density = 3.1, radius_gradient = 3.1, radius_laplacian = 3.1;  // x spacing; in 3-D 2.1
   double multiplication_coefficient = 1.05;                                    // C on the diagonal
   double relaxation_factor = 1.0;                                              // gamma on the source
   double compressibility = 4.5e-10;  // [1/Pa] of water; keeps closed clusters regular
@@ -97,8 +140,9 @@ struct ProbeCase {
   double every_time = 0;        // [s]; 0 = every step
   Point point{};                // wall_pressure: where [m]
   double x = 0;                 // surface_height [m]
+  std::optional<double> y;      // surface_height in 3-D [m]; without it the column is as wide as the scene
   std::string wall;             // wall_force: name of the geometry
-  std::string component = "x";  // wall_force: x | y
+  std::string component = "x";  // wall_force: x | y | z
   Point facing{};               // wall_pressure on a wall: the direction from the wall into the water; zero: not said
   Point min{}, max{};           // particle_count: box; all of the fluid when equal
 };
@@ -116,13 +160,14 @@ struct Scene {
   std::string name, title, reference;
   int dimension = 2;
   double end = 0;              // [s]
-  Point gravity{0, -9.81, 0};  // [m/s^2]
+  Point gravity{0, -9.81, 0};  // [m/s^2]; default in 3-D: 0, 0, -9.81
   bool has_domain = false;     // [domain] given: outside it particles are retired
   Point domain_min{}, domain_max{};
   Place domain_place;
   std::vector<BoxCase> boxes;
   std::vector<PolylineCase> polylines;
   std::vector<PlateCase> plates;
+  std::vector<MeshCase> meshes;
   FluidCase fluid;
   MpsCase mps;
   std::vector<ViscosityCase> viscosity;  // each effect: none or one
@@ -131,6 +176,12 @@ struct Scene {
   OutputCase output;
   std::vector<ProbeCase> probes;
 };
+
+/// The sides of a box: left right (x), in 3-D front back (y), bottom top (the last axis).
+std::vector<std::string> box_sides(int dimension);
+
+/// The names of all geometries: boxes, polylines, plates, meshes.
+std::vector<std::string> wall_names(const Scene& scene);
 
 /// Reads and checks the case; every key that it does not know, and every value out of range, is a CaseError with
 /// `file:line:column`, what is wrong and how to mend it.

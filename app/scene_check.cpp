@@ -1,10 +1,13 @@
-// How the parts of a scene fit together.
+// How the parts of a scene fit together, and whether its numbers make sense beside each other.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
-#include "app/scene_parts.hpp"
+#include "app/motion.hpp"
+#include "app/plan.hpp"
+#include "app/scene_shape.hpp"
 
 namespace greenwater {
 namespace {
@@ -22,7 +25,56 @@ struct Check {
     }
     return true;
   }
+  bool holds(const Corners& room) const {
+    return inside(scene.fluid.min, room.min, room.max) && inside(scene.fluid.max, room.min, room.max);
+  }
 };
+
+void check_times(const Check& check) {
+  constexpr double most_steps = 1e12;
+  const Scene& scene = check.scene;
+  const MpsCase& mps = scene.mps;
+  require_at(mps.time_step_place, mps.time_step <= scene.end, "mps.time_step = ", mps.time_step,
+             " s is longer than the run, time.end = ", scene.end, " s; take a shorter step");
+  require_at(mps.time_step_place, scene.end / mps.time_step < most_steps, "mps.time_step = ", mps.time_step,
+             " s makes more than 1e12 steps of time.end = ", scene.end, " s; take a longer step or an earlier end");
+}
+
+// The scheme is lost long before; this is for slips of the unit.
+constexpr double most_cfl = 5;
+
+void check_time_step(const Check& check) {
+  const MpsCase& mps = check.scene.mps;
+  const double cfl = front_cfl(check.scene);
+  require_at(mps.time_step_place, cfl <= most_cfl, "mps.time_step = ", mps.time_step,
+             " s makes no sense here: the front of this water would run ", cfl,
+             " particle distances in one step; take less than ", 0.5 * mps.time_step / cfl, " s");
+}
+
+void require_wider(const Check& check, const GeometryCase& geometry, const char* kind, const std::string& how_wide,
+                   double width) {
+  const double spacing = check.scene.mps.spacing;
+  require_at(check.scene.mps.spacing_place, width >= spacing - check.slack, "mps.spacing = ", spacing,
+             " m is larger than the ", kind, " \"", geometry.name, "\", which is ", width, " m ", how_wide,
+             "; take a smaller spacing");
+}
+
+void check_spacing(const Check& check) {
+  const Scene& scene = check.scene;
+  for (const BoxCase& box : scene.boxes) {
+    for (std::size_t d = 0; d < check.axes; ++d)
+      require_wider(check, box, "box", text_of("wide in ", axis_name[d]), box.max[d] - box.min[d]);
+  }
+  for (const PlateCase& plate : scene.plates) {
+    require_wider(check, plate, "plate", "high", plate.height);
+    if (scene.dimension == 3) require_wider(check, plate, "plate", "wide", plate.width);
+  }
+  for (const Shape& shape : shapes_of(scene)) {
+    double longest = 0;
+    for (std::size_t d = 0; d < check.axes; ++d) longest = std::max(longest, shape.bounds.max[d] - shape.bounds.min[d]);
+    require_wider(check, *shape.geometry, shape.kind, "long", longest);
+  }
+}
 
 void check_fluid_size(const Check& check) {
   const FluidCase& fluid = check.scene.fluid;
@@ -35,63 +87,165 @@ void check_fluid_size(const Check& check) {
   }
 }
 
-void check_fluid_in_tank(const Check& check) {
+void check_fluid_in_boxes(const Check& check) {
   const Scene& scene = check.scene;
-  const FluidCase& fluid = scene.fluid;
   if (scene.boxes.empty()) return;
-  const bool held = std::any_of(scene.boxes.begin(), scene.boxes.end(), [&](const BoxCase& box) {
-    return check.inside(fluid.min, box.min, box.max) && check.inside(fluid.max, box.min, box.max);
-  });
+  bool held = false;
+  for (const BoxCase& box : scene.boxes) held = held || check.holds({box.min, box.max});
+  for (const PolylineCase& line : scene.polylines)
+    held = held || (line.closed && inside_polyline(line, scene.fluid.min));
+  for (const Shape& shape : shapes_of(scene)) {
+    const auto is_it = [&](const MeshCase& mesh) { return &mesh == shape.geometry && mesh.closed; };
+    held = held || (std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it) && check.holds(shape.bounds));
+  }
   const BoxCase& first = scene.boxes.front();
-  require_at(fluid.place, held, "the fluid reaches out of the box \"", first.name, "\" from ",
-             toml_point(first.min, scene.dimension), " to ", toml_point(first.max, scene.dimension),
+  require_at(scene.fluid.place, held, "the fluid reaches out of the box \"", first.name, "\" from ",
+             shown_point(first.min, scene.dimension), " to ", shown_point(first.max, scene.dimension),
              " m; shrink the region or enlarge the box");
 }
 
-/// A plate stands in a box or on its side; its tip may leave through an open side.
-bool plate_fits(const Check& check, const PlateCase& plate, const BoxCase& box) {
-  if (!check.inside(plate.base, box.min, box.max)) return false;
-  const Point tip{plate.base[0] + plate.height * std::sin(plate.angle),
-                  plate.base[1] + plate.height * std::cos(plate.angle), 0};
-  const auto open = [&](const char* side) {
-    return std::find(box.open.begin(), box.open.end(), side) != box.open.end();
-  };
-  const double slack = check.slack;
-  return (tip[0] >= box.min[0] - slack || open("left")) && (tip[0] <= box.max[0] + slack || open("right")) &&
-         (tip[1] >= box.min[1] - slack || open("bottom")) && (tip[1] <= box.max[1] + slack || open("top"));
+/// Where one closed wall is all there is, water that is half in it was meant to be in it.
+void check_fluid_in_only_wall(const Check& check) {
+  const Scene& scene = check.scene;
+  const auto shapes = shapes_of(scene);
+  if (shapes.size() != 1 || !scene.boxes.empty() || !scene.plates.empty()) return;
+  const Point &a = scene.fluid.min, &b = scene.fluid.max;
+  const Point centre{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
+  const Corners& bounds = shapes.front().bounds;
+  bool astride = false;
+  for (const PolylineCase& line : scene.polylines) {
+    const double inwards = 1e-3 * scene.mps.spacing;  // walls belong to neither side
+    bool all = true;
+    for (const Point& corner : {Point{a[0] + inwards, a[1] + inwards, 0}, Point{b[0] - inwards, a[1] + inwards, 0},
+                                Point{b[0] - inwards, b[1] - inwards, 0}, Point{a[0] + inwards, b[1] - inwards, 0}})
+      all = all && inside_polyline(line, corner);
+    astride = line.closed && !all && inside_polyline(line, centre);
+  }
+  for (const MeshCase& mesh : scene.meshes)
+    astride = mesh.closed && !check.holds(bounds) && check.inside(centre, bounds.min, bounds.max);
+  const std::string& name = shapes.front().geometry->name;
+  require_at(scene.fluid.place, !astride, "the fluid reaches out of \"", name,
+             "\"; shrink the region, or fill the inside: region = { type = \"inside\", wall = \"", name,
+             "\", level = ", scene.fluid.max[check.axes - 1], " }");
 }
 
-void check_plates(const Check& check) {
+std::string at_point(const Point& x, double t, int dimension) {
+  return text_of(" at ", shown_point(x, dimension), " m, t = ", t, " s");
+}
+
+/// Some of the places where particles will be.
+std::vector<Point> samples(const Check& check) {
+  constexpr double along = 9;  // an odd number: the centre is one of them
+  const FluidCase& fluid = check.scene.fluid;
+  std::vector<Point> points;
+  const double deep = check.axes == 3 ? along : 1;
+  for (double k = 0.5; k < deep; ++k)
+    for (double j = 0.5; j < along; ++j)
+      for (double i = 0.5; i < along; ++i) {
+        const Point s{i / along, j / along, k / deep};
+        Point x{};
+        for (std::size_t d = 0; d < check.axes; ++d) x[d] = fluid.min[d] + s[d] * (fluid.max[d] - fluid.min[d]);
+        points.push_back(x);
+      }
+  return points;
+}
+
+void check_velocity(const Check& check) {
   const Scene& scene = check.scene;
-  if (scene.boxes.empty()) return;
-  for (const PlateCase& plate : scene.plates) {
-    const bool held = std::any_of(scene.boxes.begin(), scene.boxes.end(),
-                                  [&](const BoxCase& box) { return plate_fits(check, plate, box); });
-    const BoxCase& first = scene.boxes.front();
-    require_at(plate.place, held, "the plate \"", plate.name, "\" from its base ",
-               toml_point(plate.base, scene.dimension), " m, ", plate.height, " m high, is not inside the box \"",
-               first.name, "\" from ", toml_point(first.min, scene.dimension), " to ",
-               toml_point(first.max, scene.dimension), " m");
+  const VectorFormula& velocity = scene.fluid.velocity;
+  const auto compiled = compile(velocity.text, velocity.place);
+  for (const Point& x : samples(check)) {
+    const double u = compiled[0](x[0], x[1], x[2], 0), v = compiled[1](x[0], x[1], x[2], 0);
+    const double speed = std::hypot(u, v, compiled[2](x[0], x[1], x[2], 0));
+    require_at(velocity.place, std::isfinite(speed), "velocity is no finite number", at_point(x, 0, scene.dimension),
+               "; mend the formula");
+    require_at(velocity.place, speed * scene.mps.time_step <= most_cfl * scene.mps.spacing, "velocity is ", speed,
+               " m/s", at_point(x, 0, scene.dimension), ", ", speed * scene.mps.time_step / scene.mps.spacing,
+               " particle distances in one step; take a shorter mps.time_step than ", 0.5 * scene.mps.spacing / speed,
+               " s, or mend the formula");
   }
+}
+
+void check_body_force(const Check& check) {
+  const Scene& scene = check.scene;
+  for (const BodyForceCase& force : scene.body_force) {
+    const auto compiled = compile(force.acceleration.text, force.acceleration.place, Variables::place_time_velocity);
+    for (const Point& x : samples(check)) {
+      for (const Formula& component : compiled)
+        require_at(force.acceleration.place, std::isfinite(component(x[0], x[1], x[2], 0)),
+                   "acceleration is no finite number", at_point(x, 0, scene.dimension), ", at rest; mend the formula");
+    }
+  }
+}
+
+void check_motion(const Check& check, const Shape& shape) {
+  const MotionCase& motion = *shape.geometry->motion;
+  const bool moves = motion.displacement || motion.displacement_table || motion.velocity || motion.velocity_table;
+  require_at(motion.place, moves || motion.rotation || motion.rotation_table, "[geometry.", shape.geometry->name,
+             ".motion] does not say how it moves; give it one of displacement, displacement_table, velocity, "
+             "velocity_table, and/or one of rotation, rotation_table");
+  const MpsCase& mps = check.scene.mps;
+  const LongestStep longest = longest_step(Motion(motion), check.scene.end, mps.time_step, reach_of(shape));
+  require_at(motion.place, std::isfinite(longest.way), "the motion of \"", shape.geometry->name,
+             "\" is no finite number after t = ", longest.time, " s; mend the formula, or end the run before");
+  require_at(motion.place, longest.way <= mps.spacing, '"', shape.geometry->name, "\" moves ", longest.way,
+             " m in the step at t = ", longest.time, " s, more than one mps.spacing = ", mps.spacing,
+             " m: water would be left behind it. Let the motion end in time (t < 0.1 ? ... : ...), or take a shorter "
+             "mps.time_step");
 }
 
 void check_domain(const Check& check) {
   const Scene& scene = check.scene;
   if (!scene.has_domain) return;
-  const bool held = check.inside(scene.fluid.min, scene.domain_min, scene.domain_max) &&
-                    check.inside(scene.fluid.max, scene.domain_min, scene.domain_max);
-  require_at(scene.domain_place, held,
+  require_at(scene.domain_place, check.holds({scene.domain_min, scene.domain_max}),
              "the fluid reaches out of [domain]: particles there would be taken out at once; ", "enlarge the domain");
+}
+
+/// Cells in which neighbours are looked for; of particles the plan takes care.
+void check_extent(const Check& check) {
+  constexpr double most_cells = std::numeric_limits<int>::max() / 4;
+  const Scene& scene = check.scene;
+  const MpsCase& mps = scene.mps;
+  const auto lattice = lattice_cells(scene.fluid, mps.spacing, scene.dimension);
+  if (lattice[0] * lattice[1] * lattice[2] > most_cells) return;
+  const double radius = mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
+  Corners room{scene.fluid.min, scene.fluid.max};
+  for (const Shape& shape : shapes_of(scene))
+    for (std::size_t d = 0; d < check.axes; ++d) {
+      room.min[d] = std::min(room.min[d], shape.bounds.min[d]);
+      room.max[d] = std::max(room.max[d], shape.bounds.max[d]);
+    }
+  if (scene.has_domain) room = {scene.domain_min, scene.domain_max};
+  double cells = 1;
+  for (std::size_t d = 0; d < check.axes; ++d) cells *= (room.max[d] - room.min[d]) / radius + 1;
+  if (cells < most_cells) return;
+  throw ResourceError(complaint(
+      mps.spacing_place,
+      text_of("the scene from ", shown_point(room.min, scene.dimension), " to ", shown_point(room.max, scene.dimension),
+              " m has ", cells, " cells in which neighbours are looked for, more than ", most_cells,
+              "; take a larger mps.spacing, or give the scene a smaller [domain]")));
 }
 
 }  // namespace
 
 void check_scene(const Scene& scene) {
   const Check check{scene};
+  check_times(check);
+  check_spacing(check);
   check_fluid_size(check);
-  check_fluid_in_tank(check);
-  check_plates(check);
+  if (scene.fluid.inside.empty()) {
+    check_fluid_in_boxes(check);
+    check_fluid_in_only_wall(check);
+  }
+  check_walls(scene);
   check_domain(check);
+  check_extent(check);
+  check_time_step(check);
+  check_velocity(check);
+  check_body_force(check);
+  for (const Shape& shape : shapes_of(scene)) {
+    if (shape.geometry->motion) check_motion(check, shape);
+  }
 }
 
 }  // namespace greenwater

@@ -1,40 +1,56 @@
 // [geometry.NAME] and [[fluid]]: the shapes of a case.
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <set>
 
 #include "app/scene_parts.hpp"
+#include "app/scene_shape.hpp"
 
 namespace greenwater {
 namespace {
 
-BoxCase read_box(const std::string& name, Section& section, int dimension) {
+void read_common(const std::string& name, Section& section, int dimension, GeometryCase& geometry) {
+  geometry.name = name;
+  geometry.place = section.place();
+  geometry.motion = read_motion(section, dimension);
+}
+
+BoxCase read_box(Section& section, int dimension) {
   BoxCase box;
-  box.name = name;
-  box.place = section.place();
-  const Corners corners = read_corners(section, dimension, {{0, 0, 0}, {0.8, 0.6, 0}});
+  const Point shown = dimension == 2 ? Point{0.8, 0.6, 0} : Point{0.8, 0.3, 0.6};
+  const Corners corners = read_corners(section, dimension, {{0, 0, 0}, shown});
   box.min = corners.min;
   box.max = corners.max;
-  box.open = section.choices("open", {"left", "right", "bottom", "top"}, Words{});
+  const Words sides = box_sides(dimension);
+  box.open = section.choices("open", sides, Words{});
   require_at(section.place("open"), std::set(box.open.begin(), box.open.end()).size() == box.open.size(),
              "open names a side twice");
-  require_at(section.place("open"), box.open.size() < 4, "all sides of the box are open: leave the table out");
+  require_at(section.place("open"), box.open.size() < sides.size(),
+             "all sides of the box are open: leave the table out");
   return box;
 }
 
-PolylineCase read_polyline(const std::string& name, Section& section, int dimension) {
+std::vector<Point> read_corner_points(Section& section) {
+  const bool from_file = section.offers("points_file");
+  require_at(section.place("points_file"), !from_file || !section.has("points"),
+             "both points and points_file say where the polyline goes: keep one of them");
+  if (!from_file) return section.points("points", "m", 2, example<std::vector<Point>>({{0, 0, 0}, {1, 0, 0}}));
+  section.offers("points");
+  const auto path = section.file("points_file", "points.csv");
+  return read_point_file(path, section.place("points_file"));
+}
+
+PolylineCase read_polyline(Section& section) {
   PolylineCase line;
-  line.name = name;
-  line.place = section.place();
-  line.points = section.points("points", "m", dimension, example<std::vector<Point>>({{0, 0, 0}, {1, 0, 0}}));
+  line.points = read_corner_points(section);
   line.closed = section.flag("closed", false);
-  const Place place = section.place("points");
+  const Place place = section.place(section.has("points") ? "points" : "points_file");
   require_at(place, line.points.size() >= 2, "a polyline needs at least 2 points, found ", line.points.size());
   for (std::size_t i = 1; i < line.points.size(); ++i) {
     require_at(place, line.points[i] != line.points[i - 1], "points ", i, " and ", i + 1,
-               " of the polyline are the same: ", toml_point(line.points[i], dimension));
+               " of the polyline are the same: ", toml_point(line.points[i], 2), "; delete one of them");
   }
   if (line.closed) {
     require_at(place, line.points.size() >= 3, "a closed polyline needs at least 3 points");
@@ -44,17 +60,31 @@ PolylineCase read_polyline(const std::string& name, Section& section, int dimens
   return line;
 }
 
-PlateCase read_plate(const std::string& name, Section& section, int dimension) {
+PlateCase read_plate(Section& section, int dimension) {
   constexpr double flat = std::numbers::pi / 2;
   PlateCase plate;
-  plate.name = name;
-  plate.place = section.place();
   plate.base = section.vector("base", "m", dimension, example(Point{0.6, 0, 0}));
   plate.base_side = section.choice("base_side", {"upstream", "centre", "downstream"}, std::string("centre"));
   plate.height = section.number("height", "m", positive, example(0.1));
   plate.thickness = section.number("thickness", "m", at_least(0), 0.0);
+  if (dimension == 3) plate.width = section.number("width", "m", positive, example(0.2));
   plate.angle = section.number("angle", "rad", between(-flat, flat), 0.0);
   return plate;
+}
+
+template <class Geometry>
+void keep(Geometry geometry, const GeometryCase& common, std::vector<Geometry>& all) {
+  static_cast<GeometryCase&>(geometry) = common;
+  all.push_back(std::move(geometry));
+}
+
+void require_dimension(const Section& section, const std::string& type, int dimension) {
+  const Place place = section.place("type");
+  require_at(place, type != "polyline" || dimension == 2,
+             "a polyline is for dimension = 2; in 3-D take a box, a plate, or the surface from an STL file: type = "
+             "\"stl\"");
+  require_at(place, type != "stl" || dimension == 3,
+             "an STL file is for dimension = 3; in 2-D take type = \"polyline\" with points or a points_file");
 }
 
 }  // namespace
@@ -62,31 +92,16 @@ PlateCase read_plate(const std::string& name, Section& section, int dimension) {
 void read_geometry(Section root, Scene& scene) {
   for (auto& [name, section] : root.named("geometry")) {
     require_safe_name(name, section.place(), "the geometry");
-    const std::string type = section.choice("type", {"box", "polyline", "plate"}, example<std::string>("box"));
-    if (type == "box") scene.boxes.push_back(read_box(name, section, scene.dimension));
-    if (type == "polyline") scene.polylines.push_back(read_polyline(name, section, scene.dimension));
-    if (type == "plate") scene.plates.push_back(read_plate(name, section, scene.dimension));
+    require_at(section.place(), name != "all", "\"all\" stands for every geometry in no_slip: take another name");
+    const std::string type = section.choice("type", {"box", "polyline", "plate", "stl"}, example<std::string>("box"));
+    require_dimension(section, type, scene.dimension);
+    GeometryCase common;
+    read_common(name, section, scene.dimension, common);
+    if (type == "box") keep(read_box(section, scene.dimension), common, scene.boxes);
+    if (type == "polyline") keep(read_polyline(section), common, scene.polylines);
+    if (type == "plate") keep(read_plate(section, scene.dimension), common, scene.plates);
+    if (type == "stl") keep(read_mesh(name, section), common, scene.meshes);
   }
-}
-
-void read_fluid(Section root, Scene& scene) {
-  std::vector<Section> fluids = root.list("fluid");
-  require_at(root.place(), !fluids.empty(),
-             "missing table [[fluid]]; add for example:\n    [[fluid]]\n"
-             "    region = { type = \"box\", min = [0.0, 0.0], max = [0.2, 0.4] }");
-  if (fluids.size() > 1) refuse(fluids[1].place(), "this version runs one [[fluid]], found ", fluids.size());
-  Section& section = fluids.front();
-  FluidCase& fluid = scene.fluid;
-  fluid.name = section.text("name", std::string("water"));
-  require_safe_name(fluid.name, section.place("name"), "the fluid");
-  fluid.density = section.number("density", "kg/m^3", positive, 1000.0);
-  fluid.velocity = read_formulas(section, "velocity", "m/s", scene.dimension, Formulas{"0", "0", "0"});
-  Section region = section.table("region");
-  region.choice("type", {"box"}, std::string("box"));
-  const Corners corners = read_corners(region, scene.dimension, {{0, 0, 0}, {0.2, 0.4, 0}});
-  fluid.min = corners.min;
-  fluid.max = corners.max;
-  fluid.place = region.place();
 }
 
 }  // namespace greenwater

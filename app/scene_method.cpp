@@ -1,14 +1,15 @@
 // [mps], [effects.NAME], [output]: how the run is done and what it leaves behind.
 
+#include <algorithm>
 #include <limits>
 
-#include "app/formula.hpp"
 #include "app/scene_parts.hpp"
 
 namespace greenwater {
 namespace {
 
 constexpr std::int64_t most_iterations = std::numeric_limits<int>::max();
+constexpr int most_sweeps = 1000;
 
 int small_count(Section& section, const std::string& key, std::int64_t low, std::int64_t preset) {
   const std::int64_t value = section.count(key, low, preset);
@@ -33,10 +34,27 @@ double not_zero(Section& section, const std::string& key, double value) {
   return value;
 }
 
+/// Names of walls, each once; "all" stands for every one.
+Words read_no_slip(Section& section, const Words& walls) {
+  Words known = walls;
+  known.emplace_back("all");
+  const Words given = section.choices("no_slip", known, Words{});
+  if (std::find(given.begin(), given.end(), "all") != given.end()) return walls;
+  Words names;
+  for (const std::string& name : given) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
 }  // namespace
 
-void read_mps(Section mps, MpsCase& options) {
+void read_mps(Section mps, Scene& scene) {
   constexpr double least_radius = 1.1, most_radius = 10;  // x spacing: neighbours at all, and memory
+  constexpr double usual_radius_3d = 2.1;                 // of the literature; some 40 neighbours, where 3.1 means 125
+  MpsCase& options = scene.mps;
+  if (scene.dimension == 3)
+    options.radius_density = options.radius_gradient = options.radius_laplacian = usual_radius_3d;
   options.scheme = mps.choice("scheme", {"classic"}, options.scheme);
   options.spacing = mps.number("spacing", "m", positive, example(0.004));
   options.spacing_place = mps.place("spacing");
@@ -62,8 +80,11 @@ void read_mps(Section mps, MpsCase& options) {
 
 void read_effects(Section effects, Scene& scene) {
   if (auto section = effects.table_if_present("viscosity")) {
+    ViscosityCase viscosity;
     const double kinematic = section->number("kinematic", "m^2/s", at_least(0), example(1e-6));
-    scene.viscosity.push_back({not_zero(*section, "kinematic", kinematic)});
+    viscosity.kinematic = not_zero(*section, "kinematic", kinematic);
+    viscosity.no_slip = read_no_slip(*section, wall_names(scene));
+    scene.viscosity.push_back(viscosity);
   }
   if (auto section = effects.table_if_present("collision")) {
     CollisionCase collision;
@@ -71,14 +92,18 @@ void read_effects(Section effects, Scene& scene) {
     collision.distance = not_zero(*section, "distance", distance);
     collision.restitution = section->number("restitution", "-", between(0, 1), collision.restitution);
     collision.sweeps = small_count(*section, "sweeps", 1, collision.sweeps);
+    require_at(section->place("sweeps"), collision.sweeps <= most_sweeps, "sweeps = ", collision.sweeps,
+               " rounds a step is beyond all use: at most ", most_sweeps);
     scene.collision.push_back(collision);
   }
   if (auto section = effects.table_if_present("body_force")) {
     BodyForceCase force;
-    force.acceleration = read_formulas(*section, "acceleration", "m/s^2", scene.dimension,
-                                       example(Formulas{"0.5*sin(2*pi*t)", "0", "0"}));
-    require_at(force.acceleration.place, !is_zero(compile(force.acceleration.text, force.acceleration.place)),
-               "acceleration = 0 is no effect: leave the table ", section->header(), " out");
+    const Preset<Formulas> shown = example(Formulas{"0.5*sin(2*pi*t)", "0", "0"});
+    force.acceleration =
+        read_formulas(*section, {"acceleration", "m/s^2", shown, Variables::place_time_velocity}, scene.dimension);
+    const auto compiled = compile(force.acceleration.text, force.acceleration.place, Variables::place_time_velocity);
+    require_at(force.acceleration.place, !is_zero(compiled), "acceleration = 0 is no effect: leave the table ",
+               section->header(), " out");
     scene.body_force.push_back(force);
   }
 }

@@ -2,18 +2,36 @@
 // The parts of read_scene(), one per chapter of the case file. Each reads its tables into the scene, and checks what it
 // can check alone; check_scene() looks at how the parts fit together.
 
+#include <filesystem>
+
+#include "app/formula.hpp"
 #include "app/scene.hpp"
 
 namespace greenwater {
 
 void read_geometry(Section root, Scene& scene);         // [geometry.NAME]
 void read_fluid(Section root, Scene& scene);            // [[fluid]]
-void read_mps(Section mps, MpsCase& options);           // [mps], [mps.pressure]
+void read_mps(Section mps, Scene& scene);               // [mps], [mps.pressure]
 void read_effects(Section effects, Scene& scene);       // [effects.NAME]
 void read_output(Section output, OutputCase& options);  // [output]
 void read_probes(Section root, Scene& scene);           // [[probe]]
 
-/// Sizes against the spacing, fluid in the tank, plates in the tank, all inside the domain. Throws CaseError.
+/// `[geometry.NAME]` with type = "stl": the file, scaled, turned, moved and checked. Throws CaseError that names the STL
+/// file, the triangle or line in it, and the cure.
+MeshCase read_mesh(const std::string& name, Section& section);
+
+/// The corners of a polyline [m], x and y in each row of a text file. Throws CaseError with the line in that file; a
+/// point that repeats the one before it is refused.
+std::vector<Point> read_point_file(const std::filesystem::path& path, const Place& place);
+
+/// `[geometry.NAME.motion]`, where there is one. Its tables are read, its formulas compile, and it begins at rest.
+std::optional<MotionCase> read_motion(Section& geometry, int dimension);
+
+/// Plates in their box and apart, no walls that cut through each other. Throws CaseError.
+void check_walls(const Scene& scene);
+
+/// All of that: sizes against the spacing, walls against each other, fluid in the tank, motions against the step, all inside the
+/// domain. Throws CaseError.
 void check_scene(const Scene& scene);
 
 /// The end of a box: `min` and `max` [m], each component of max above that of min.
@@ -25,8 +43,14 @@ Corners read_corners(Section& section, int dimension, const Corners& shown);
 /// Names become parts of file names: letters, digits, '_', '-' and '.', not first.
 void require_safe_name(const std::string& name, const Place& place, const std::string& of_what);
 
-/// A formula vector that compiles; presets are constants.
-VectorFormula read_formulas(Section& section, const std::string& key, const std::string& unit, int dimension,
-                            const Preset<Formulas>& preset);
+/// A vector of formulas to be read: its key, unit, default or example, and what it may depend on.
+struct FormulaWish {
+  std::string key, unit;
+  Preset<Formulas> preset;
+  Variables variables;
+};
+
+/// A formula vector that compiles.
+VectorFormula read_formulas(Section& section, const FormulaWish& wish, int dimension);
 
 }  // namespace greenwater

@@ -1,35 +1,30 @@
 // [[probe]]: what is sampled during the run, each into its own file.
 
-#include <algorithm>
-
 #include "app/scene_parts.hpp"
 
 namespace greenwater {
 namespace {
 
-Words wall_names(const Scene& scene) {
-  Words names;
-  for (const auto& box : scene.boxes) names.push_back(box.name);
-  for (const auto& line : scene.polylines) names.push_back(line.name);
-  for (const auto& plate : scene.plates) names.push_back(plate.name);
-  return names;
-}
-
 /// Each kind asks for its own keys; those of another kind are unknown keys.
 void read_kind(Section& section, const Scene& scene, ProbeCase& probe) {
   const Words walls = wall_names(scene);
   const std::string shown = walls.empty() ? "tank" : walls.front();
-  if (probe.kind == "surface_height") probe.x = section.number("x", "m", any_number, example(0.3));
+  const Words axes = scene.dimension == 2 ? Words{"x", "y"} : Words{"x", "y", "z"};
+  if (probe.kind == "surface_height") {
+    probe.x = section.number("x", "m", any_number, example(0.3));
+    if (scene.dimension == 3 && section.offers("y")) probe.y = section.number("y", "m", any_number, example(0.1));
+  }
   if (probe.kind == "wall_force") {
     probe.wall = section.choice("wall", walls, example(shown));
-    probe.component = section.choice("component", {"x", "y"}, std::string("x"));
+    probe.component = section.choice("component", axes, std::string("x"));
   }
   if (probe.kind == "wall_pressure") {
-    probe.point = section.vector("point", "m", scene.dimension, example(Point{0.6, 0.01, 0}));
+    probe.point = section.vector("point", "m", scene.dimension, example(Point{0.6, 0.01, 0.01}));
     probe.facing = section.vector("facing", "-", scene.dimension, Point{0, 0, 0});
   }
-  if (probe.kind == "particle_count" && (section.has("min") || section.has("max"))) {
-    const Corners corners = read_corners(section, scene.dimension, {{0, 0, 0}, {0.1, 0.1, 0}});
+  const bool boxed = section.has("min") || section.has("max");
+  if (probe.kind == "particle_count" && boxed) {
+    const Corners corners = read_corners(section, scene.dimension, {{0, 0, 0}, {0.1, 0.1, 0.1}});
     probe.min = corners.min;
     probe.max = corners.max;
   }

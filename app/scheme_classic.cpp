@@ -31,6 +31,7 @@ class Classic : public Scheme {
     // 1  explicit part: everything but pressure
     clear_acceleration(fluid);
     effects.run(Stage::force, fluid, dt);
+    effects.run(Stage::walls, fluid, dt);
     report.stopped = predict(fluid, dt);
     effects.run(Stage::after_predict, fluid, dt);
 

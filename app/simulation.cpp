@@ -11,7 +11,8 @@ namespace greenwater {
 namespace {
 
 int body_of(const WallFaces& walls, const std::string& name) {
-  const auto found = std::find(walls.bodies.begin(), walls.bodies.end(), name);
+  const auto found =
+      std::find_if(walls.bodies.begin(), walls.bodies.end(), [&](const auto& b) { return b.name == name; });
   expect(found != walls.bodies.end());
   return static_cast<int>(found - walls.bodies.begin());
 }
@@ -41,7 +42,7 @@ Column vector_column(const std::string& name, const std::string& unit, const Fie
 
 std::string effects_text(const Effects& effects) {
   std::string text;
-  for (const Stage stage : {Stage::force, Stage::after_predict}) {
+  for (const Stage stage : {Stage::force, Stage::walls, Stage::after_predict}) {
     for (const auto& effect : effects.at(stage)) text += (text.empty() ? "" : ", ") + std::string(effect->name());
   }
   return text.empty() ? "none" : text;
@@ -51,14 +52,16 @@ std::string effects_text(const Effects& effects) {
 
 Simulation::Simulation(const Scene& scene)
     : scene_(scene),
-      walls_(build_walls(scene)),
-      fluid_(build_fluid(scene, walls_)),
+      fluid_(build_fluid(scene, build_walls(scene))),
       effects_(build_effects(scene)),
       scheme_(build_scheme(scene)) {
-  for (const ProbeCase& probe : scene_.probes)
-    pressure_points_.push_back(probe.kind == "wall_pressure" ? pressure_point(scene_, walls_, probe) : probe.point);
+  for (const ProbeCase& probe : scene_.probes) {
+    const bool of_pressure = probe.kind == "wall_pressure";
+    pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);
+    probe_motions_.push_back(of_pressure ? motion_of(scene_, fluid_.faces, probe) : nullptr);
+  }
   // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
-  const Extent extent = scene_extent(scene_, walls_);
+  const Extent extent = scene_extent(scene_, fluid_.faces);
   for (int d = 0; d < 3; ++d) potential_zero_[d] = scene_.gravity[d] > 0 ? extent.high[d] : extent.low[d];
   first_energy_ = energy(fluid_sums(fluid_, potential_zero_));
 }
@@ -126,11 +129,15 @@ StepFacts Simulation::facts() {
 double Simulation::sample(std::size_t index) {
   const ProbeCase& probe = scene_.probes[index];
   if (probe.kind == "wave_front") return or_nothing(wave_front(fluid_));
-  if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x));
-  if (probe.kind == "wall_pressure") return sampler_.pressure(fluid_, {pressure_points_[index]}).front();
+  if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x, probe.y));
+  if (probe.kind == "wall_pressure") {
+    const Point& start = pressure_points_[index];
+    const Point now = probe_motions_[index] ? probe_motions_[index]->at(start, time()) : start;
+    return sampler_.pressure(fluid_, {now}).front();
+  }
   if (probe.kind == "wall_force") {
-    const auto patches = wall_patches(walls_, body_of(walls_, probe.wall), fluid_.spacing);
-    return wall_force(sampler_, fluid_, patches)[probe.component == "y" ? 1 : 0];
+    const auto patches = wall_patches(fluid_.faces, body_of(fluid_.faces, probe.wall), fluid_.spacing);
+    return wall_force(sampler_, fluid_, patches)[probe.component.front() - 'x'];
   }
   expect(probe.kind == "particle_count");
   if (probe.min == probe.max) return static_cast<double>(fluid_.particles.count);
@@ -158,19 +165,24 @@ Table Simulation::fluid_table() const {
 
 std::vector<std::string> Simulation::plan() const {
   Plan plan = plan_of(scene_);
-  plan.particles = fluid_.particles.count;  // the arithmetic of the plan knows no plates
+  plan.particles = fluid_.particles.count;  // the arithmetic of the plan knows no plates and no slanting walls
+  plan.at_most = false;
   std::vector<std::string> lines = plan_lines(plan, scene_);
-  lines.push_back(text_of("walls     ", walls_.faces.size(), " straight faces"));
+  lines.push_back(text_of("walls     ", fluid_.walls.panels, fluid_.faces.dim == 2 ? " straight" : " plane",
+                          " panels, ", fluid_.walls.count - fluid_.walls.panels, " reflections in corners"));
   lines.push_back("effects   " + effects_text(effects_));
   return lines;
 }
 
-std::vector<std::array<double, 6>> Simulation::wall_segments() const {
-  std::vector<std::array<double, 6>> segments;
-  for (const WallFace& face : walls_.faces)
-    segments.push_back(
-        {face.end[0][0], face.end[0][1], face.end[0][2], face.end[1][0], face.end[1][1], face.end[1][2]});
-  return segments;
+std::vector<WallShape> Simulation::wall_shapes() const {
+  std::vector<WallShape> shapes;
+  for (const WallFace& face : fluid_.faces.faces) {
+    shapes.emplace_back();
+    for (int e = 0; e < fluid_.faces.dim; ++e) shapes.back().push_back(face.corner[e].position);
+  }
+  return shapes;
 }
+
+bool Simulation::walls_move() const { return !effects_.at(Stage::walls).empty(); }
 
 }  // namespace greenwater

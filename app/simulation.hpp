@@ -3,6 +3,7 @@
 
 #include "app/build.hpp"
 #include "core/table.hpp"
+#include "core/wall_shape.hpp"
 #include "io/step_facts.hpp"
 #include "kernels/sample.hpp"
 
@@ -34,8 +35,9 @@ class Simulation {
   /// What the run will be, for people: particles, steps, memory, walls, effects.
   std::vector<std::string> plan() const;
 
-  /// x, y, z of both ends of every wall [m].
-  std::vector<std::array<double, 6>> wall_segments() const;
+  /// The corners of every wall as it stands now [m]: two of a straight wall in 2-D, three of a triangle in 3-D.
+  std::vector<WallShape> wall_shapes() const;
+  bool walls_move() const;
 
   const Fluid& fluid() const { return fluid_; }
   const Effects& effects() const { return effects_; }
@@ -46,12 +48,12 @@ class Simulation {
   double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
 
   Scene scene_;
-  WallFaces walls_;
   Fluid fluid_;
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;
   PointSampler sampler_;
-  std::vector<Point> pressure_points_;  // of each probe; only those of pressure probes mean anything
+  std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything
+  std::vector<std::unique_ptr<Motion>> probe_motions_;  // of those on a wall that moves
   Point potential_zero_{};
   double first_energy_ = 0;
   std::int64_t steps_ = 0, retired_ = 0;

@@ -1,0 +1,88 @@
+#include "app/fill.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "app/plan.hpp"
+#include "app/plate_frame.hpp"
+#include "core/interior.hpp"
+
+namespace greenwater {
+namespace {
+
+// Cell centres of a lattice in the fluid's bounds, from `from` on.
+std::vector<Point> lattice(const FluidCase& fluid, const Point& from, double spacing, int dimension) {
+  const auto cells = lattice_cells(fluid, spacing, dimension);
+  const int nx = static_cast<int>(cells[0]), ny = static_cast<int>(cells[1]), nz = static_cast<int>(cells[2]);
+  std::vector<Point> points;
+  points.reserve(static_cast<std::size_t>(nx) * ny * nz);
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        points.push_back({from[0] + (i + 0.5) * spacing, from[1] + (j + 0.5) * spacing,
+                          dimension == 3 ? from[2] + (k + 0.5) * spacing : 0.0});
+  return points;
+}
+
+std::vector<Point> lattice_in_the_middle(const FluidCase& fluid, double spacing, int dimension) {
+  const auto cells = lattice_cells(fluid, spacing, dimension);
+  Point from = fluid.min;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d)
+    from[d] += std::max(0.0, (fluid.max[d] - fluid.min[d] - cells[d] * spacing) / 2);
+  return lattice(fluid, from, spacing, dimension);
+}
+
+Interior interior_of(const Scene& scene) {
+  for (const PolylineCase& line : scene.polylines)
+    if (line.name == scene.fluid.inside) return Interior(line.points);
+  const auto found = std::find_if(scene.meshes.begin(), scene.meshes.end(),
+                                  [&](const MeshCase& mesh) { return mesh.name == scene.fluid.inside; });
+  return Interior(found->mesh);
+}
+
+// As many points inside as have room by volume: of a lattice just dense enough, without those closest to walls.
+std::vector<Point> fill_inside(const Scene& scene) {
+  const Interior interior = interior_of(scene);
+  const double l0 = scene.mps.spacing;
+  const auto wanted =
+      static_cast<std::size_t>(std::llround(interior.measure_below(scene.fluid.level) / std::pow(l0, scene.dimension)));
+  std::vector<Point> points;
+  for (double spacing = l0; points.size() < wanted; spacing *= 0.99) {
+    points = lattice_in_the_middle(scene.fluid, spacing, scene.dimension);
+    points.erase(std::remove_if(points.begin(), points.end(), [&](const Point& x) { return !interior.holds(x); }),
+                 points.end());
+  }
+  std::vector<double> room;
+  for (const Point& x : points) room.push_back(interior.distance(x, l0));
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return room[a] > room[b]; });
+  order.resize(wanted);
+  std::sort(order.begin(), order.end());
+  std::vector<Point> kept;
+  for (const std::size_t k : order) kept.push_back(points[k]);
+  return kept;
+}
+
+}  // namespace
+
+bool needs_spreading(const Scene& scene) {
+  return !scene.fluid.inside.empty() && std::none_of(scene.boxes.begin(), scene.boxes.end(),
+                                                     [&](const auto& b) { return b.name == scene.fluid.inside; });
+}
+
+std::vector<Point> fill(const Scene& scene) {
+  std::vector<Point> points = needs_spreading(scene)
+                                  ? fill_inside(scene)
+                                  : lattice(scene.fluid, scene.fluid.min, scene.mps.spacing, scene.dimension);
+  for (const PlateCase& plate : scene.plates)
+    points.erase(std::remove_if(points.begin(), points.end(),
+                                [&](const Point& x) { return inside_plate(plate, x, scene.dimension); }),
+                 points.end());
+  require_at(scene.fluid.place, !points.empty(),
+             "the fluid's region holds no particle: enlarge it or take a smaller mps.spacing");
+  return points;
+}
+
+}  // namespace greenwater
