@@ -7,6 +7,7 @@
 #include "app/scene.hpp"
 #include "io/suggest.hpp"
 #include "tests/catch.hpp"
+#include "tests/meshes.hpp"
 #include "tests/program.hpp"
 
 using namespace greenwater;
@@ -43,6 +44,46 @@ std::string without_comments(const std::string& text) {
   return plain.substr(plain.find("format"));
 }
 
+/// A tank in 3-D with a gate in it, filled to a level; more tables may follow.
+std::string tank_3d() {
+  return R"(format = 1
+[case]
+name = "tank"
+dimension = 3
+[time]
+end = 0.1
+[geometry.tank]
+type = "box"
+min = [0.0, 0.0, 0.0]
+max = [0.4, 0.2, 0.4]
+open = ["back", "top"]
+[geometry.gate]
+type = "plate"
+base = [0.3, 0.1, 0.0]
+height = 0.1
+width = 0.2
+[[fluid]]
+region = { type = "inside", wall = "tank", level = 0.08 }
+[mps]
+spacing = 0.02
+time_step = 0.002
+[[probe]]
+name = "load"
+kind = "wall_force"
+wall = "gate"
+component = "z"
+[[probe]]
+name = "height"
+kind = "surface_height"
+x = 0.1
+y = 0.05
+[[probe]]
+name = "mean_height"
+kind = "surface_height"
+x = 0.1
+)";
+}
+
 struct Bad {
   std::string file;
   std::string place;  // line:column
@@ -62,6 +103,34 @@ const std::vector<Bad> bad_cases{
     {"unreadable", "7:6", "not valid TOML", "close the bracket"},
     {"wrong_unit", "16:11", "\"1000 mm\" is in mm", "kg/m^3 is wanted"},
     {"fluid_outside_tank", "17:1", "reaches out of the box \"tank\"", "shrink the region or enlarge the box"},
+    {"cut_short", "17:55", "encountered end-of-file", "copy the rest again"},
+    {"spacing_above_tank", "20:11", "1.5 m is larger than the box \"tank\", which is 0.4 m wide", "a smaller spacing"},
+    {"huge_radius", "21:18", "radius_density = 1e+06", "must be at most 10"},
+    {"too_many_steps", "21:13", "more than 1e12 steps of time.end = 1e+300 s", "take a longer step or an earlier end"},
+    {"step_too_long", "21:13", "140.071 particle distances in one step", "take less than 0.0017848 s"},
+    {"velocity_not_finite", "17:12", "velocity is no finite number at [", "mend the formula"},
+    {"plate_outside_tank", "15:11", "from [0.5, 0] to [0.5, 0.1] m, is not inside the box \"tank\"", "move or shrink"},
+    {"plate_above_lid", "15:11", "is not inside the box \"tank\"", "open a side of the box"},
+    {"plate_wider_than_tank", "16:11", "from [0.3, -0.05, 0] to [0.3, 0.25, 0.1] m", "move or shrink the plate"},
+    {"missing_width", "16:11", "missing key \"width\" [m] in [geometry.plate]", "add for example: width = 0.2"},
+    {"overlapping_plates", "21:11", "the plates \"gate\" and \"sill\" overlap", "move one of them"},
+    {"crossing_walls", "15:11", "the walls of \"tank\" and \"bed\" cross at [0.4, 0.05] m",
+     "let one end where it meets"},
+    {"polyline_in_3d", "12:8", "a polyline is for dimension = 2", "type = \"stl\""},
+    {"wrong_vector_length", "13:7", "min needs 3 components", "in 3-D, found 2"},
+    {"level_above_tank", "17:52", "level = 0.8 m is not inside \"tank\", which reaches from y = 0 m to 0.4 m",
+     "not a depth"},
+    {"open_polyline_region", "16:36", "the polyline \"tank\" is open", "give it closed = true, or fill a box"},
+    {"unknown_no_slip", "25:12", "no_slip cannot be \"tnak\"", "did you mean \"tank\"?"},
+    {"force_across", "30:13", "component cannot be \"z\"", "known: x, y"},
+    {"motion_in_space", "21:16", "character 12: \"x\" has no meaning here", "the only variable is t [s]"},
+    {"motion_from_elsewhere", "21:16", "displacement in x is 0.1 m at t = 0", "subtract 0.1"},
+    {"motion_twice", "22:12", "both displacement and velocity", "keep one of them"},
+    {"motion_too_fast", "20:16", "\"gate\" moves 0.14103 m in the step at t = 0.499 s", "Let the motion end in time"},
+    {"motion_without_words", "21:9", "about belongs to a rotation", "add rotation or rotation_table"},
+    {"rotation_without_axis", "16:16", "missing key \"axis\" in [geometry.tank.motion]", "axis = [0.0, 1.0, 0.0]"},
+    {"table_out_of_order", "21:22", "times must ascend, but line 3 has 0.2 s and line 4 has 0.1 s", "sort the rows"},
+    {"missing_table", "21:18", "there is no file ", "looked up beside the case file"},
 };
 
 std::string bad_path(const std::string& name) {
@@ -119,6 +188,126 @@ TEST_CASE("the resolved case reads back to itself", "[unit][case]") {
   CHECK(contains(first.resolved(), "density = 1000.0  # kg/m^3; default"));
 }
 
+TEST_CASE("a resolved case in 3-D with all its motion reads back to itself", "[unit][case]") {
+  const TemporaryFolder folder;
+  write_text(folder / "roll.csv", "t,angle\n0,0\n1,0.2\n");
+  write_text(folder / "case.toml", tank_3d() + R"toml([geometry.tank.motion]
+rotation_table = "roll.csv"
+about = ["20 cm", 0.1, 0.0]
+axis = [0, 1, 0]
+[geometry.gate.motion]
+displacement = [0, 0, "0.1*t^2"]
+rotation = "0.1*sin(t)"
+about = [0.3, 0.0, 0.0]
+axis = [0, 0, 2]
+[effects.viscosity]
+kinematic = 1e-6
+no_slip = "all"
+[effects.body_force]
+acceleration = ["-0.1*u", 0, "x*w"]
+)toml");
+  CaseFile first(folder / "case.toml");
+  const Scene scene = read_scene(first);
+  CaseFile second(first.resolved(), "elsewhere/b.toml", {});
+  const Scene again = read_scene(second);
+  CHECK(without_comments(first.resolved()) == without_comments(second.resolved()));
+  CHECK(contains(first.resolved(), "rotation_table = \"" + folder.path().string()));
+  for (const Scene* one : {&scene, &again}) {
+    CHECK(one->dimension == 3);
+    CHECK(one->gravity == Point{0, 0, -9.81});
+    CHECK(one->mps.radius_density == 2.1);
+    CHECK(one->mps.radius_laplacian == 2.1);
+    CHECK(one->mps.free_surface_ratio == 0.97);
+    CHECK(one->boxes.at(0).open == Words{"back", "top"});
+    CHECK(one->boxes.at(0).motion.value().rotation_table.value().value.at(1).at(0) == 0.2);
+    CHECK(one->boxes.at(0).motion.value().about == Point{0.2, 0.1, 0});
+    CHECK(one->plates.at(0).width == 0.2);
+    CHECK(one->plates.at(0).motion.value().displacement.value().text[2] == "0.1*t^2");
+    CHECK(one->plates.at(0).motion.value().rotation.value().text == "0.1*sin(t)");
+    CHECK(one->fluid.inside == "tank");
+    CHECK(one->fluid.level == 0.08);
+    CHECK(one->fluid.min == Point{0, 0, 0});
+    CHECK(one->fluid.max == Point{0.4, 0.2, 0.08});
+    CHECK(one->viscosity.at(0).no_slip == Words{"tank", "gate"});
+    CHECK(one->body_force.at(0).acceleration.text == Formulas{"-0.1*u", "0.0", "x*w"});
+    CHECK(one->probes.at(0).component == "z");
+    CHECK(one->probes.at(1).y.value() == 0.05);
+    CHECK(!one->probes.at(2).y);
+  }
+}
+
+TEST_CASE("polylines come from files, and are filled to a level", "[unit][case]") {
+  const TemporaryFolder folder;
+  write_text(folder / "hull.csv", "x,y\n0.0,0.3\n0.2,0.0\n0.4,0.3\n");
+  write_text(folder / "case.toml", R"(format = 1
+[case]
+name = "hull"
+[time]
+end = 0.1
+[geometry.hull]
+type = "polyline"
+points_file = "hull.csv"
+closed = true
+[[fluid]]
+region = { type = "inside", wall = "hull", level = "15 cm" }
+[effects.viscosity]
+kinematic = 1e-6
+no_slip = ["hull", "hull"]
+[mps]
+spacing = 0.02
+time_step = 0.002
+)");
+  CaseFile file(folder / "case.toml");
+  const Scene scene = read_scene(file);
+  CHECK(scene.polylines.at(0).points.at(1) == Point{0.2, 0, 0});
+  CHECK(scene.fluid.max == Point{0.4, 0.15, 0});
+  CHECK(scene.viscosity.at(0).no_slip == Words{"hull"});
+  CHECK(contains(plan_lines(plan_of(scene), scene).front(), "at most 140 particles"));
+}
+
+TEST_CASE("a closed surface from a file is a tank that moves and is filled", "[unit][case]") {
+  const TemporaryFolder folder;
+  write_text(folder / "box.stl", stl_text(box_mesh({0, 0, 0}, {400, 200, 300})));
+  const std::string text = R"toml(format = 1
+[case]
+name = "stl"
+dimension = 3
+[time]
+end = 0.1
+[geometry.hull]
+type = "stl"
+file = "box.stl"
+unit = "mm"
+closed = true
+[geometry.hull.motion]
+velocity = [0, "0.1*sin(20*t)", 0]
+[[fluid]]
+region = { type = "inside", wall = "hull", level = 0.08 }
+[mps]
+spacing = 0.02
+time_step = 0.002
+[[probe]]
+name = "load"
+kind = "wall_force"
+wall = "hull"
+)toml";
+  write_text(folder / "case.toml", text);
+  CaseFile first(folder / "case.toml");
+  const Scene scene = read_scene(first);
+  CHECK(scene.meshes.at(0).closed);
+  CHECK(scene.meshes.at(0).motion.has_value());
+  CHECK(scene.fluid.max[1] == Approx(0.2));
+  CHECK(scene.fluid.max[2] == 0.08);
+  CHECK(contains(plan_lines(plan_of(scene), scene).front(), "at most 800 particles"));
+  CaseFile second(first.resolved(), "elsewhere/b.toml", {});
+  CHECK(read_scene(second).meshes.at(0).mesh.vertices == scene.meshes.at(0).mesh.vertices);
+  std::string open = text;
+  open.replace(open.find("closed = true"), 13, "closed = false");
+  write_text(folder / "case.toml", open);
+  CaseFile third(folder / "case.toml");
+  CHECK_THROWS_WITH(read_scene(third), Catch::Contains("the mesh \"hull\" has no inside"));
+}
+
 TEST_CASE("--set changes, adds, and is checked like the file", "[unit][case]") {
   CHECK(scene_of(small_case(), {set_option("mps.spacing=5 mm")}).mps.spacing == 0.005);
   CHECK(scene_of(small_case(), {set_option("mps.spacing=.005")}).mps.spacing == 0.005);
@@ -155,7 +344,41 @@ TEST_CASE("slips in TOML get a hint", "[unit][case]") {
 TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
   const std::vector<std::array<std::string, 3>> slips{
       {"format = 1", "format = 2", "reads format 1"},
-      {"[case]\n", "[case]\ndimension = 3\n", "this version runs dimension = 2"},
+      {"[case]\n", "[case]\ndimension = 4\n", "dimension must be 2 or 3, not 4"},
+      {"height = 0.05", "height = 0.05\nwidth = 0.1", "unknown key \"width\" in [geometry.plate]"},
+      {"height = 0.05", "height = 0.005", "larger than the plate \"plate\", which is 0.005 m high"},
+      {"base = [0.3, 0.0]", "base = [0.3, -0.01]", "not inside the box"},
+      {"height = 0.05", "height = 0.05\nthickness = 0.3", "not inside the box"},
+      {"type = \"plate\"", "type = \"stl\"", "an STL file is for dimension = 3"},
+      {"[geometry.plate]", "[geometry.all]", "take another name"},
+      {"type = \"plate\"", "type = \"polyline\"", "missing key \"points\""},
+      {"region = { type = \"box\", min = [0.0, 0.0], max = [0.1, 0.2] }",
+       "region = { type = \"inside\", wall = \"plate\", level = 0.1 }", "the plate \"plate\" has no inside"},
+      {"region = { type = \"box\", min = [0.0, 0.0], max = [0.1, 0.2] }",
+       "region = { type = \"inside\", wall = \"tnk\", level = 0.1 }", "did you mean \"tank\"?"},
+      {"[[fluid]]", "[geometry.plate.motion]\n[[fluid]]", "does not say how it moves"},
+      {"[[fluid]]", "[geometry.plate.motion]\ndisplacemnt = [0, 0]\n[[fluid]]", "did you mean \"displacement\"?"},
+      {"[[fluid]]", "[geometry.plate.motion]\nrotation = 0.1\nabout = [0, 0]\n[[fluid]]", "rotation is 0.1 rad at t"},
+      {"[[fluid]]", "[geometry.plate.motion]\nrotation = \"t\"\n[[fluid]]", "missing key \"about\" [m]"},
+      {"[[fluid]]", "[geometry.plate.motion]\nvelocity = [0, \"1/(t - 0.01)^2\"]\n[[fluid]]", "m in the step at"},
+      {"[[fluid]]", "[geometry.plate.motion]\ndisplacement = [0, \"t > 0.01 ? 1/0 : 0\"]\n[[fluid]]",
+       "no finite number"},
+      {"[[fluid]]", "[geometry.bar]\ntype = \"plate\"\nbase = [0.3, 0.0]\nheight = 0.1\n[[fluid]]", "overlap"},
+      {"[[fluid]]",
+       "[geometry.eight]\ntype = \"polyline\"\npoints = [[0.1, 0.2], [0.2, 0.3], [0.2, 0.2], [0.1, 0.3]]\n[[fluid]]",
+       "\"eight\" cross each other at [0.15, 0.25]"},
+      {"[[fluid]]", "[geometry.other]\ntype = \"box\"\nmin = [0.2, 0.1]\nmax = [0.6, 0.2]\n[[fluid]]",
+       "cross at [0.4, 0."},
+      {"type = \"plate\"\nbase = [0.3, 0.0]\nheight = 0.05\n[[fluid]]\nregion = { type = \"box\", min = [0.0, 0.0], "
+       "max = [0.1, "
+       "0.2] }",
+       "type = \"polyline\"\npoints = [[0.1, 0.1], [0.3, 0.1], [0.2, 0.1], [0.2, 0.3]]\nclosed = true\n[[fluid]]\n"
+       "region = { type = \"inside\", wall = \"plate\", level = 0.2 }",
+       "its sides [0.1, 0.1] - [0.3, 0.1] m and [0.3, 0.1] - [0.2, 0.1] m meet"},
+      {"[[fluid]]", "[[fluid]]\nvelocity = [1e6, 0]", "velocity is 1e+06 m/s"},
+      {"[output]", "[effects.body_force]\nacceleration = [0, \"q\"]\n[output]", "velocity u, v, w [m/s]"},
+      {"[output]", "[effects.viscosity]\nkinematic = 1e-6\nno_slip = \"wall\"\n[output]", "known: tank, plate, all"},
+      {"[output]", "[effects.collision]\nsweeps = 1000000\n[output]", "beyond all use"},
       {"name = \"small\"", "name = \"../small\"", "file names"},
       {"name = \"load\"", "name = \"front\"", "two probes have the name"},
       {"wall = \"plate\"", "wall = \"plat\"", "did you mean \"plate\"?"},
@@ -184,6 +407,56 @@ TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
   CHECK(contains(complaint_about(""), "missing key \"format\""));
 }
 
+TEST_CASE("walls may touch, stand in each other, and pass through open sides", "[unit][case]") {
+  for (const char* more : {
+           "[geometry.bed]\ntype = \"polyline\"\npoints = [[0.0, 0.1], [0.1, 0.0]]\n",
+           "[geometry.pier]\ntype = \"box\"\nmin = [0.2, 0.1]\nmax = [0.25, 0.15]\n",
+           "[geometry.side]\ntype = \"box\"\nmin = [0.4, 0.0]\nmax = [0.8, 0.4]\n",
+           "[geometry.pipe]\ntype = \"box\"\nmin = [0.1, 0.3]\nmax = [0.2, 0.6]\nopen = [\"bottom\"]\n",
+           "[geometry.wall]\ntype = \"plate\"\nbase = [0.2, 0.0]\nheight = 0.7\n",
+           "[geometry.leaning]\ntype = \"plate\"\nbase = [0.2, 0.0]\nheight = 0.1\nangle = \"-30 deg\"\n",
+           "[geometry.falling]\ntype = \"plate\"\nbase = [0.2, 0.5]\nheight = 0.1\n"
+           "[geometry.falling.motion]\nvelocity = [0, \"-9.81*t\"]\n",
+       }) {
+    INFO(more);
+    CHECK(complaint_about(small_case() + more).empty());
+  }
+}
+
+TEST_CASE("a case in 3-D that makes no sense is refused", "[unit][case]") {
+  CHECK(complaint_about(tank_3d()).empty());
+  const std::vector<std::array<std::string, 3>> slips{
+      {"open = [\"back\", \"top\"]", "open = [\"behind\"]", "known: left, right, front, back, bottom, top"},
+      {"base = [0.3, 0.1, 0.0]", "base = [0.3, 0.15, 0.0]\nangle = 0.1", ""},  // out through the open back
+      {"base = [0.3, 0.1, 0.0]", "base = [0.3, 0.05, 0.0]", "not inside the box"},
+      {"width = 0.2", "width = 0.01", "larger than the plate \"gate\", which is 0.01 m wide"},
+      {"level = 0.08", "level = 0.01", "the fluid is empty: its region is 0.01 m wide in z"},
+      {"level = 0.08", "level = -1", "reaches from z = 0 m to 0.4 m"},
+      {"[[fluid]]", "[geometry.b]\ntype = \"box\"\nmin = [0.2, 0.05, 0.1]\nmax = [0.6, 0.1, 0.2]\n[[fluid]]",
+       "the walls of \"tank\" and \"b\" cross at [0.4, 0.05, 0.15] m"},
+      {"[[fluid]]", "[geometry.b]\ntype = \"box\"\nmin = [0.2, 0.05, 0.1]\nmax = [0.3, 0.3, 0.2]\n[[fluid]]", ""},
+      {"[[fluid]]", "[geometry.b]\ntype = \"plate\"\nbase = [0.3, 0.1, 0]\nheight = 0.1\nwidth = 0.1\n[[fluid]]",
+       "overlap"},
+      {"[[fluid]]", "[geometry.gate.motion]\nrotation = \"t\"\nabout = [0, 0, 0]\naxis = [0, 0, 0]\n[[fluid]]",
+       "axis has no direction"},
+      {"spacing = 0.02", "spacing = 0.02\nradius_gradient = 11", "must be at most 10"},
+      {"[[fluid]]", "[domain]\nmin = [-1e6, -1e6, -1e6]\nmax = [1e6, 1e6, 1e6]\n[[fluid]]", "a smaller [domain]"},
+  };
+  for (const auto& [before, after, answer] : slips) {
+    std::string text = tank_3d();
+    text.replace(text.find(before), before.size(), after);
+    std::string said;
+    try {
+      scene_of(text);
+    } catch (const Error& error) {
+      said = error.what();
+    }
+    INFO(after << " -> " << said);
+    CHECK(answer.empty() == said.empty());
+    CHECK(contains(said, answer));
+  }
+}
+
 TEST_CASE("the nearest word is found, and nothing far away", "[unit][case]") {
   CHECK(edit_distance("density", "densty") == 1);
   CHECK(edit_distance("spacing", "spaicng") == 1);
@@ -200,6 +473,30 @@ TEST_CASE("the plan counts what will be made", "[unit][case]") {
   CHECK(plan.steps == 9);
   CHECK(plan.frames == 5);
   CHECK(plan.cfl == Approx(2 * std::sqrt(9.81 * 0.1) * 0.0023 / 0.02));
+}
+
+TEST_CASE("the plan warns of what is allowed and hardly meant", "[unit][case]") {
+  const auto warnings = [](const std::string& more) {
+    const Scene scene = scene_of(tank_3d() + more);
+    std::string all;
+    for (const std::string& warning : plan_of(scene).warnings) all += warning + '\n';
+    return all;
+  };
+  CHECK(warnings("").empty());
+  CHECK(contains(warnings("[geometry.tank.motion]\nvelocity = [0.1, 0, 0]\n"), "tank moves and gate in it does not"));
+  CHECK(contains(warnings("[geometry.gate.motion]\nvelocity = [0, 0, 8]\n"), "gate moves 0.80 x spacing in the step"));
+  CHECK(contains(warnings("[[probe]]\nname = \"p\"\nkind = \"wall_pressure\"\npoint = [5, 0, 0]\n"),
+                 "probe p is outside"));
+}
+
+TEST_CASE("the plan counts in 3-D", "[unit][case]") {
+  const Scene scene = scene_of(tank_3d());
+  const Plan plan = plan_of(scene);
+  CHECK(plan.particles == 20 * 10 * 4);
+  CHECK(!plan.at_most);
+  CHECK(plan.cfl == Approx(2 * std::sqrt(9.81 * 0.08) * 0.002 / 0.02));
+  // A sphere of 2.1 spacings, 12 bytes a neighbour, half as much again for growth.
+  CHECK(plan.memory == Approx(plan.particles * (464 + 1.5 * 12 * 4.0 / 3 * std::acos(-1) * 2.1 * 2.1 * 2.1)));
 }
 
 TEST_CASE("the cases that come with the program are good", "[unit][case]") {

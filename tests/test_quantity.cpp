@@ -80,6 +80,24 @@ TEST_CASE("formulas know x, y, z, t and the usual functions", "[unit][formula]")
   CHECK(!is_zero(compile({"0", "x", "0"}, place)));
 }
 
+TEST_CASE("a formula knows the variables of its place", "[unit][formula]") {
+  const Place place{"case.toml", 3, 7, 1, nullptr};
+  CHECK(Formula("t^2", place, Variables::time)(0, 0, 0, 3) == 9);
+  CHECK(Formula("x + 2*u - v*w", place, Variables::place_time_velocity)(1, 0, 0, 0, {2, 3, 4}) == 1 + 4 - 12);
+  const auto refused = [&](const std::string& text, Variables variables) -> std::string {
+    try {
+      Formula(text, place, variables);
+    } catch (const CaseError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK(contains(refused("exp(t) + x", Variables::time),
+                 "character 10: \"x\" has no meaning here; the only variable is t"));
+  CHECK(contains(refused("max(1, u)", Variables::place_and_time), "character 8: \"u\" has no meaning here"));
+  CHECK(contains(refused("q", Variables::place_time_velocity), "the velocity u, v, w [m/s]"));
+}
+
 TEST_CASE("what is no formula is refused with its position", "[unit][formula]") {
   CHECK(contains(refused_formula("2*sin(x"), "case.toml:3:7: error: formula \"2*sin(x\", character 8"));
   CHECK(contains(refused_formula("1 + v"), "character 5"));
