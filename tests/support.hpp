@@ -47,9 +47,17 @@ inline Particles particles_at(const Positions& at, int dim) {
 
 inline WallFace segment(coord x0, coord y0, coord x1, coord y1, int body = 0) {
   WallFace face;
-  face.end = {{{x0, y0, 0}, {x1, y1, 0}}};
+  face.corner[0].position = {x0, y0, 0};
+  face.corner[1].position = {x1, y1, 0};
   face.body = body;
   return face;
+}
+
+inline WallFaces walls_of(std::vector<WallFace> faces) {
+  WallFaces walls;
+  walls.bodies = {{"a"}, {"b"}, {"c"}};
+  walls.faces = std::move(faces);
+  return walls;
 }
 
 struct FluidOptions {
@@ -76,13 +84,15 @@ inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const Fl
   };
   for (const auto& x : at) widen(x);
   for (const auto& face : walls.faces)
-    for (const auto& end : face.end) widen(end);
+    for (int e = 0; e < options.dim; ++e) widen(face.corner[e].position);
   for (int d = 0; d < options.dim; ++d) {
     low[d] -= options.margin;
     high[d] += options.margin;
   }
   fluid.grid = CellGrid(make_grid(options.dim, low, high, weight.radius));
-  fluid.walls = make_mirror_walls(walls, fluid.grid.shape(), options.spacing);
+  fluid.faces = walls;
+  fluid.faces.dim = options.dim;
+  make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), options.spacing);
   fluid.particles = particles_at(at, options.dim);
   fluid.grid.sort(fluid.particles);
   fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));

@@ -14,7 +14,7 @@ constexpr coord l0 = 0.1;
 
 WallFaces tank() {
   WallFaces walls;
-  walls.bodies = {"tank"};
+  walls.bodies = {{"tank"}};
   walls.faces = {segment(0, 0, 2, 0), segment(0, 0, 0, 3), segment(2, 3, 2, 0)};
   return walls;
 }
@@ -45,6 +45,10 @@ void set_velocity(Fluid& fluid, const std::function<std::array<double, 2>(double
     u(i, 1) = static_cast<real>(value[1]);
   }
   Kokkos::deep_copy(fluid.particles.velocity, u);
+}
+
+ForceField constant_force(double x, double y) {
+  return [x, y](const auto&, const auto&, double) { return std::array<double, 3>{x, y, 0}; };
 }
 
 double kinetic_energy(const Fluid& fluid) {
@@ -86,7 +90,7 @@ TEST_CASE("every launch and allocation has a name of ours", "[unit][effects]") {
   Effects effects;
   effects.add(make_viscosity(real(1e-6)));
   effects.add(make_collision({}));
-  effects.add(make_body_force([](double, double, double, double, double* f) { f[0] = 1; }));
+  effects.add(make_body_force(constant_force(1, 0)));
   Fluid fluid = water();
   for (int k = 0; k < 2; ++k) scheme->step(fluid, effects, real(1e-3));
   REQUIRE(ears.launched("greenwater::viscosity"));
@@ -106,7 +110,7 @@ TEST_CASE("a steady step allocates nothing", "[unit][effects]") {
   Effects effects;
   effects.add(make_viscosity(real(1e-6)));
   effects.add(make_collision({}));
-  effects.add(make_body_force([](double, double, double, double, double* f) { f[0] = 0.1; }));
+  effects.add(make_body_force(constant_force(0.1, 0)));
   Fluid fluid = water();
   for (int k = 0; k < 5; ++k) scheme->step(fluid, effects, real(1e-3));
   Ears ears;
@@ -117,7 +121,7 @@ TEST_CASE("a steady step allocates nothing", "[unit][effects]") {
 TEST_CASE("viscosity slows a shear wave as it should", "[unit][effects]") {
   // u = (sin(k y), 0) between slipping walls at y = 0 and y = 2, where cos fits: u' = -nu k^2 u.
   WallFaces walls;
-  walls.bodies = {"channel"};
+  walls.bodies = {{"channel"}};
   walls.faces = {segment(-1, 0, 5, 0), segment(-1, 2, 5, 2)};
   Fluid fluid = fluid_at(lattice(80, 40, 0.05), walls, {.spacing = 0.05});
   const double k = M_PI / 2, nu = 0.1;
@@ -168,7 +172,7 @@ TEST_CASE("two particles bounce with their restitution, and one off a wall", "[u
     CHECK(u(i, 1) == Approx(0.5));
   }
   WallFaces wall;
-  wall.bodies = {"floor"};
+  wall.bodies = {{"floor"}};
   wall.faces = {segment(-1, 0, 1, 0)};
   Fluid one = fluid_at({{0, 0.02, 0}}, wall, {.spacing = l0});
   set_velocity(one, [](double, double) { return std::array<double, 2>{0.3, -1}; });
@@ -181,7 +185,7 @@ TEST_CASE("a body force drives particles and the images' pressure alike", "[unit
   // Gravity given as a body force balances the same column as gravity itself.
   Fluid fluid = fluid_at(lattice(20, 30, l0), tank(), {.spacing = l0});
   clear_acceleration(fluid);
-  make_body_force([](double, double, double, double, double* f) { f[1] = -10; })->apply(fluid, real(1e-3));
+  make_body_force(constant_force(0, -10))->apply(fluid, real(1e-3));
   CHECK(host(fluid.particles.acceleration)(100, 1) == Approx(-10));
   const auto x = host(fluid.particles.position);
   const auto p = Kokkos::create_mirror(fluid.particles.pressure);

@@ -23,20 +23,21 @@ namespace {
 
 const ResultsOrigin origin{{{"git", "1a2b3c4"}, {"command_line", "greenwater run a.toml"}}, "format = 1\n"};
 
-/// Particle i of frame `step` has the pressure step + i / 8, which float32 holds exactly.
-Table table_of(std::size_t rows, std::int64_t step) {
+/// Particle i of frame `step` has the pressure step + i / 8 and the place (i, 0.5, -i / 4), which float32 holds
+/// exactly.
+Table table_of(std::size_t rows, std::int64_t step, std::size_t dim = 2) {
   Table table{"water", 0.25 * static_cast<double>(step), step, rows, {}};
   std::vector<std::int64_t> id(rows);
-  std::vector<double> position(2 * rows), pressure(rows);
+  std::vector<double> position(dim * rows), pressure(rows);
   std::vector<std::uint8_t> surface(rows, 1);
   for (std::size_t i = 0; i < rows; ++i) {
     id[i] = static_cast<std::int64_t>(i);
     pressure[i] = static_cast<double>(step) + static_cast<double>(i) / 8;
-    position[2 * i] = static_cast<double>(i);
-    position[2 * i + 1] = 0.5;
+    const double at[3] = {static_cast<double>(i), 0.5, -static_cast<double>(i) / 4};
+    for (std::size_t d = 0; d < dim; ++d) position[dim * i + d] = at[d];
   }
   table.columns = {{"id", "-", 1, id},
-                   {"position", "m", 2, position},
+                   {"position", "m", static_cast<int>(dim), position},
                    {"pressure", "Pa", 1, pressure},
                    {"surface", "-", 1, surface}};
   return table;
@@ -81,10 +82,77 @@ std::size_t checked_frames(const std::filesystem::path& path, std::size_t rows) 
   return info.nlinks;
 }
 
-/// The text between the next two quotes.
-std::string quoted(const std::string& text, std::size_t from) {
-  const std::size_t start = text.find('"', from) + 1;
+/// A data set of two dimensions, row by row; `columns` gets its width.
+std::vector<double> matrix(hid_t parent, const char* name, hsize_t& columns) {
+  const Hdf5Handle data(H5Dopen2(parent, name, H5P_DEFAULT), H5Dclose);
+  REQUIRE(data.id() >= 0);
+  const Hdf5Handle space(H5Dget_space(data.id()), H5Sclose);
+  REQUIRE(H5Sget_simple_extent_ndims(space.id()) == 2);
+  hsize_t extent[2];
+  H5Sget_simple_extent_dims(space.id(), extent, nullptr);
+  columns = extent[1];
+  std::vector<double> values(extent[0] * extent[1]);
+  REQUIRE(H5Dread(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
+  return values;
+}
+
+/// The text between the two quotes behind the next `key`.
+std::string quoted(const std::string& text, const std::string& key, std::size_t from = 0) {
+  const std::size_t start = text.find('"', text.find(key, from)) + 1;
   return text.substr(start, text.find('"', start) - start);
+}
+
+/// A .vtp as a reader would take it apart: the counts of its piece, and the bytes of each array by section and name.
+struct VtpFile {
+  std::map<std::string, int> counts;
+  std::map<std::string, std::string> arrays;
+
+  explicit VtpFile(const std::filesystem::path& path) {
+    const std::string text = text_in(path);
+    const std::string appended = "<AppendedData encoding=\"raw\">\n_", end = "\n</AppendedData>\n</VTKFile>\n";
+    const std::size_t start = text.find(appended);
+    REQUIRE(start != std::string::npos);
+    REQUIRE(text.substr(text.size() - end.size()) == end);
+    const std::string head = text.substr(0, start);
+    const std::size_t first = start + appended.size();
+    const std::string data = text.substr(first, text.size() - end.size() - first);
+    for (const std::string what : {"Points", "Verts", "Lines", "Strips", "Polys"}) {
+      counts[what] = std::stoi(quoted(head, "NumberOf" + what));
+    }
+    std::size_t read = 0;
+    for (const std::string section : {"FieldData", "PointData", "Points", "Verts", "Lines", "Polys"}) {
+      const std::size_t open = head.find('<' + section + '>'), close = head.find("</" + section + '>');
+      REQUIRE(open < close);
+      for (std::size_t at = head.find("<DataArray", open); at < close; at = head.find("<DataArray", at + 1)) {
+        const std::size_t offset = std::stoul(quoted(head, "offset=", at));
+        std::uint64_t length = 0;
+        REQUIRE(offset + sizeof length <= data.size());
+        std::memcpy(&length, data.data() + offset, sizeof length);
+        REQUIRE(offset + sizeof length + length <= data.size());
+        arrays[section + '/' + quoted(head, "Name=", at)] = data.substr(offset + sizeof length, length);
+        read += sizeof length + length;
+      }
+    }
+    CHECK(read == data.size());  // nothing between the arrays, or read twice
+  }
+
+  template <class T>
+  std::vector<T> values(const std::string& name) const {
+    const std::string& bytes = arrays.at(name);
+    std::vector<T> numbers(bytes.size() / sizeof(T));
+    if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
+    return numbers;
+  }
+};
+
+using Ints = std::vector<std::int32_t>;
+using Floats = std::vector<float>;
+
+/// A floor of a 3-D tank, a triangle, and between them a line as of a 2-D scene; all moved to the right by x.
+std::vector<WallShape> three_walls(double x) {
+  return {{{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 2, 0}, {x, 2, 0}},
+          {{x, 0, 0}, {x, 0, 3}},
+          {{x, 0, 0}, {x, 0.5, 0}, {x, 0, 0.25}}};
 }
 
 }  // namespace
@@ -165,46 +233,103 @@ TEST_CASE("files that cannot be written are named, with exit code 4", "[unit][ou
                  "cannot be opened for the next frame"));
 }
 
-TEST_CASE("a .vtp has the arrays where it says", "[unit][output]") {
+TEST_CASE("places in three dimensions and moving walls are in results.h5", "[unit][output]") {
   const TemporaryFolder folder;
-  Paraview paraview(folder.path(), "water");
-  for (std::int64_t step = 0; step < 3; ++step) paraview.write(table_of(7, step));
-  const std::string text = text_in(folder / "water/water_000002.vtp");
-  const std::size_t start = text.find("<AppendedData encoding=\"raw\">\n_");
-  REQUIRE(start != std::string::npos);
-  const std::string data = text.substr(text.find('_', start) + 1);
-  const std::string head = text.substr(0, start);
-  CHECK(contains(head, "NumberOfPoints=\"7\" NumberOfVerts=\"7\""));
-  const std::map<std::string, std::size_t> bytes{{"TimeValue", 8}, {"id", 56},     {"pressure", 28},
-                                                 {"surface", 7},   {"Points", 84}, {"connectivity", 28},
-                                                 {"offsets", 28}};
-  std::size_t found = 0;
-  for (std::size_t at = head.find("Name=\""); at != std::string::npos; at = head.find("Name=\"", at + 1), ++found) {
-    const std::string name = quoted(head, at);
-    const std::size_t offset = std::stoul(quoted(head, head.find("offset=\"", at)));
-    std::uint64_t length = 0;
-    REQUIRE(offset + sizeof length <= data.size());
-    std::memcpy(&length, data.data() + offset, sizeof length);
-    INFO(name);
-    CHECK(length == bytes.at(name));
-    if (name != "Points") continue;
-    float first[6];
-    std::memcpy(first, data.data() + offset + sizeof length, sizeof first);
-    CHECK(first[3] == 1.0F);  // x of particle 1; y = 0.5 behind it, and z = 0 as padding
-    CHECK(first[4] == 0.5F);
-    CHECK(first[5] == 0.0F);
-  }
-  CHECK(found == bytes.size());
-  CHECK(contains(text_in(folder / "water.pvd"), "timestep=\"0.5\" part=\"0\" file=\"water/water_000002.vtp\""));
+  Results results(folder / "results.h5", origin, Precision::float32);
+  results.write(table_of(5, 0, 3), three_walls(0));
+  results.write(table_of(5, 1, 3), three_walls(0.125));
+  results.write(table_of(5, 2, 3));
+  CHECK(checked_frames(results.path(), 5) == 3);
+  const Hdf5Handle file(H5Fopen(results.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
+  hsize_t width = 0;
+  const auto particles = matrix(file.id(), "frames/000001/position", width);
+  CHECK(width == 3);
+  CHECK(particles == std::get<std::vector<double>>(table_of(5, 1, 3).columns[1].values));
+  const auto corners = matrix(file.id(), "frames/000001/walls/position", width);
+  CHECK(width == 3);
+  std::vector<double> expected;
+  for (const WallShape& wall : three_walls(0.125))
+    for (const auto& corner : wall) expected.insert(expected.end(), corner.begin(), corner.end());
+  CHECK(corners == expected);
+  const Hdf5Handle wall(H5Dopen2(file.id(), "frames/000001/walls/wall", H5P_DEFAULT), H5Dclose);
+  std::vector<std::int64_t> numbers(9, -1);
+  REQUIRE(H5Dread(wall.id(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers.data()) >= 0);
+  CHECK(numbers == std::vector<std::int64_t>{0, 0, 0, 0, 1, 1, 2, 2, 2});
+  const Hdf5Handle position(H5Dopen2(file.id(), "frames/000001/walls/position", H5P_DEFAULT), H5Dclose);
+  CHECK(text_attribute(position.id(), "unit") == "m");
+  CHECK(text_attribute(wall.id(), "unit") == "-");
+  CHECK(H5Lexists(file.id(), "frames/000000/walls", H5P_DEFAULT) > 0);
+  CHECK(H5Lexists(file.id(), "frames/000002/walls", H5P_DEFAULT) == 0);  // walls that stand are not repeated
 }
 
-TEST_CASE("walls and empty tables are files too", "[unit][output]") {
+TEST_CASE("a .vtp has the arrays where it says", "[unit][output]") {
   const TemporaryFolder folder;
-  write_walls(folder / "walls.vtp", {{0, 0, 0, 1, 0, 0}, {1, 0, 0, 1, 2, 0}});
-  CHECK(contains(text_in(folder / "walls.vtp"), "NumberOfPoints=\"4\" NumberOfVerts=\"0\" NumberOfLines=\"2\""));
-  CHECK_NOTHROW(write_walls(folder / "none.vtp", {}));
+  for (const std::size_t dim : {std::size_t{2}, std::size_t{3}}) {
+    Paraview paraview(folder.path(), "water");
+    for (std::int64_t step = 0; step < 3; ++step) paraview.write(table_of(7, step, dim));
+    const VtpFile vtp(folder / "water/water_000002.vtp");
+    CHECK(vtp.counts ==
+          std::map<std::string, int>{{"Points", 7}, {"Verts", 7}, {"Lines", 0}, {"Strips", 0}, {"Polys", 0}});
+    CHECK(vtp.arrays.size() == 7);
+    CHECK(vtp.values<double>("FieldData/TimeValue") == std::vector<double>{0.5});
+    CHECK(vtp.values<std::int64_t>("PointData/id") == std::vector<std::int64_t>{0, 1, 2, 3, 4, 5, 6});
+    CHECK(vtp.values<float>("PointData/pressure") == Floats{2, 2.125, 2.25, 2.375, 2.5, 2.625, 2.75});
+    CHECK(vtp.values<std::uint8_t>("PointData/surface") == std::vector<std::uint8_t>(7, 1));
+    CHECK(vtp.values<std::int32_t>("Verts/connectivity") == Ints{0, 1, 2, 3, 4, 5, 6});
+    CHECK(vtp.values<std::int32_t>("Verts/offsets") == Ints{1, 2, 3, 4, 5, 6, 7});
+    Floats points;
+    for (int i = 0; i < 7; ++i) {  // two components are padded with z = 0
+      const auto x = static_cast<float>(i);
+      points.insert(points.end(), {x, 0.5F, dim == 3 ? -x / 4 : 0.0F});
+    }
+    CHECK(vtp.values<float>("Points/Points") == points);
+    CHECK(contains(text_in(folder / "water.pvd"), "timestep=\"0.5\" part=\"0\" file=\"water/water_000002.vtp\""));
+  }
+}
+
+TEST_CASE("walls are lines and polygons", "[unit][output]") {
+  const TemporaryFolder folder;
+  write_walls(folder / "walls.vtp", three_walls(0));
+  const VtpFile vtp(folder / "walls.vtp");
+  CHECK(vtp.counts ==
+        std::map<std::string, int>{{"Points", 9}, {"Verts", 0}, {"Lines", 1}, {"Strips", 0}, {"Polys", 2}});
+  CHECK(vtp.values<std::int32_t>("Lines/connectivity") == Ints{4, 5});
+  CHECK(vtp.values<std::int32_t>("Lines/offsets") == Ints{2});
+  CHECK(vtp.values<std::int32_t>("Polys/connectivity") == Ints{0, 1, 2, 3, 6, 7, 8});
+  CHECK(vtp.values<std::int32_t>("Polys/offsets") == Ints{4, 7});
+  CHECK(vtp.values<float>("Points/Points") ==
+        Floats{0, 0, 0, 1, 0, 0, 1, 2, 0, 0, 2, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0, 0, 0.5F, 0, 0, 0, 0.25F});
+  CHECK(vtp.arrays.count("FieldData/TimeValue") == 0);
+
+  write_walls(folder / "flat.vtp", {{{0, 0, 0}, {1, 0, 0}}, {{1, 0, 0}, {1, 2, 0}}});
+  const VtpFile flat(folder / "flat.vtp");
+  CHECK(flat.counts.at("Lines") == 2);
+  CHECK(flat.counts.at("Polys") == 0);
+  CHECK(flat.values<std::int32_t>("Lines/connectivity") == Ints{0, 1, 2, 3});
+  CHECK(flat.values<std::int32_t>("Lines/offsets") == Ints{2, 4});
+}
+
+TEST_CASE("walls that move have frames with times", "[unit][output]") {
+  const TemporaryFolder folder;
+  Paraview moving(folder.path(), "walls");
+  moving.write(0, three_walls(0));
+  moving.write(0.25, three_walls(0.5));
+  const VtpFile vtp(folder / "walls/walls_000001.vtp");
+  CHECK(vtp.values<double>("FieldData/TimeValue") == std::vector<double>{0.25});
+  CHECK(vtp.values<float>("Points/Points").at(0) == 0.5F);
+  CHECK(vtp.values<std::int32_t>("Polys/offsets") == Ints{4, 7});
+  const std::string pvd = text_in(folder / "walls.pvd");
+  CHECK(contains(pvd, "timestep=\"0\" part=\"0\" file=\"walls/walls_000000.vtp\""));
+  CHECK(contains(pvd, "timestep=\"0.25\" part=\"0\" file=\"walls/walls_000001.vtp\""));
+}
+
+TEST_CASE("no walls and empty tables are files too", "[unit][output]") {
+  const TemporaryFolder folder;
+  write_walls(folder / "none.vtp", {});
+  CHECK(VtpFile(folder / "none.vtp").counts.at("Points") == 0);
   Paraview paraview(folder.path(), "water");
-  CHECK_NOTHROW(paraview.write(table_of(0, 0)));
+  paraview.write(table_of(0, 0));
+  CHECK(VtpFile(folder / "water/water_000000.vtp").counts.at("Points") == 0);
 }
 
 TEST_CASE("a .csv has one header, plain digits and is on disk at once", "[unit][output]") {

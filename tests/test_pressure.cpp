@@ -15,7 +15,7 @@ constexpr coord l0 = 0.1;
 // A tank with a plate of no thickness and a thick one in it.
 WallFaces tank_with_plates() {
   WallFaces walls;
-  walls.bodies = {"tank", "thin", "thick"};
+  walls.bodies = {{"tank"}, {"thin"}, {"thick"}};
   walls.faces = {segment(0, 0, 2, 0),           segment(0, 0, 0, 3),          segment(2, 3, 2, 0),
                  segment(0.7, 0, 0.7, 0.8, 1),  segment(1.2, 0, 1.2, 0.5, 2), segment(1.2, 0.5, 1.43, 0.5, 2),
                  segment(1.43, 0.5, 1.43, 0, 2)};
@@ -132,7 +132,7 @@ TEST_CASE("conjugate gradients agree with a dense solve", "[unit][pressure]") {
 
 TEST_CASE("a closed cluster without a surface is refused with its cause", "[unit][pressure]") {
   WallFaces box;
-  box.bodies = {"box"};
+  box.bodies = {{"box"}};
   box.faces = {segment(0, 0, 1, 0), segment(1, 0, 1, 1), segment(1, 1, 0, 1), segment(0, 1, 0, 0)};
   Fluid fluid = fluid_at(lattice(10, 10, l0, 0, 0, 0.05), box, {.spacing = l0});
   mark_surface(fluid, real(0.5));
@@ -189,12 +189,13 @@ namespace {
 double slope_of_column(coord wall_acceleration) {
   const real g = 10, dt = real(1e-3);
   WallFaces walls;
-  walls.bodies = {"tank"};
+  walls.bodies = {{"tank"}};
   walls.faces = {segment(0, 0, 2, 0), segment(0, 0, 0, 8), segment(2, 8, 2, 0)};
-  for (WallFace& face : walls.faces) {
-    face.acceleration = {0, wall_acceleration, 0};
-    face.velocity = {0, wall_acceleration * dt, 0};  // at the end of a step that starts at rest
-  }
+  for (WallFace& face : walls.faces)
+    for (WallPoint& corner : face.corner) {
+      corner.acceleration = {0, wall_acceleration, 0};
+      corner.velocity = {0, wall_acceleration * dt, 0};  // at the end of a step that starts at rest
+    }
   Fluid fluid = fluid_at(lattice(20, 60, l0), walls, {.spacing = l0});
   fluid.gravity[1] = -g;
   clear_acceleration(fluid);
@@ -224,10 +225,11 @@ TEST_CASE("a still column has slope rho g, one accelerated upwards by g has 2 rh
 
 TEST_CASE("the pressure gradient of a still column in balance is g, down to the floor", "[unit][pressure]") {
   WallFaces walls;
-  walls.bodies = {"tank"};
+  walls.bodies = {{"tank"}};
   walls.faces = {segment(0, 0, 2, 0), segment(0, 0, 0, 8), segment(2, 8, 2, 0)};
   for (const coord wall_acceleration : {0.0, 10.0}) {
-    for (WallFace& face : walls.faces) face.acceleration = {0, wall_acceleration, 0};
+    for (WallFace& face : walls.faces)
+      for (WallPoint& corner : face.corner) corner.acceleration = {0, wall_acceleration, 0};
     Fluid fluid = fluid_at(lattice(20, 30, l0), walls, {.spacing = l0});
     fluid.gravity[1] = -10;
     const auto x = host(fluid.particles.position);

@@ -54,7 +54,7 @@ std::string fingerprint_with(int threads) {
 
 TEST_CASE("fingerprint of order", "[.fingerprint]") {
   WallFaces walls;
-  walls.bodies = {"tank"};
+  walls.bodies = {{"tank"}};
   walls.faces = {segment(0, 0, 2, 0), segment(0, 0, 0, 2), segment(1, 0, 1, 1)};
   const Fluid flat = fluid_at(random_cloud(5000, 2, 1, 2), walls, {.spacing = 0.03});
   const Fluid deep = fluid_at(random_cloud(5000, 3, 2), {}, {.dim = 3, .spacing = 0.06});

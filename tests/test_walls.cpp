@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/check.hpp"
+#include "kernels/wall_panels.hpp"
 #include "tests/support.hpp"
 
 using namespace greenwater;
@@ -11,13 +12,6 @@ using namespace greenwater::test;
 namespace {
 
 constexpr coord l0 = 0.1;
-
-WallFaces walls_of(std::vector<WallFace> faces) {
-  WallFaces walls;
-  walls.bodies = {"a", "b", "c"};
-  walls.faces = std::move(faces);
-  return walls;
-}
 
 FluidOptions options_with(coord radius, real shift) {
   FluidOptions options;
@@ -120,29 +114,23 @@ TEST_CASE("sight is mutual to the last bit", "[unit][walls]") {
   for (int i = 0; i < fluid.particles.count; ++i)
     for (auto k = first(i); k < first(i + 1); ++k) seen[{i, index(k), mirror(k)}] = weight(k);
   REQUIRE(seen.size() > 1000);
+  const auto mirrors = host(fluid.walls.mirror);
   for (const auto& [who, w] : seen) {
-    const auto back = seen.find({who[1], who[0], who[2]});
+    const auto back = seen.find({who[1], who[0], mirrors(who[2]).reverse});
     REQUIRE(back != seen.end());
     CHECK(back->second == w);
   }
 }
 
 TEST_CASE("walls on one line that touch are one", "[unit][walls]") {
-  WallFaces walls = walls_of({segment(0, 0, 1, 0), segment(0, 0, 0, 1), segment(3, 0, 2, 0, 1), segment(1, 0, 2, 0)});
-  merge_collinear(walls, 1e-9);
-  REQUIRE(walls.faces.size() == 2);
-  CHECK(std::min(walls.faces[0].end[0][0], walls.faces[0].end[1][0]) == Approx(0).margin(1e-15));
-  CHECK(std::max(walls.faces[0].end[0][0], walls.faces[0].end[1][0]) == Approx(3));
-}
-
-TEST_CASE("walls that meet at another angle are refused in words", "[unit][walls]") {
-  const auto walls = walls_of({segment(0, 0, 1, 0), segment(0, 0, -1, 1, 1)});
-  CHECK_THROWS_WITH(make_mirror_walls(walls, make_grid(2, {-1, -1, 0}, {1, 1, 0}, 0.3), 0.1),
-                    Catch::Contains("'a' and 'b' meet at 45 degrees"));
+  const auto walls = walls_of({segment(0, 0, 1, 0), segment(0, 0, 0, 1), segment(3, 0, 2, 0, 1), segment(1, 0, 2, 0)});
+  const WallPanels made = find_panels(walls, 1e-9);
+  CHECK(made.panels.size() == 2);
+  CHECK(made.mirrors.size() == 3);
 }
 
 TEST_CASE("a scene without walls holds no memory for them", "[unit][walls]") {
   const Fluid fluid = fluid_at(random_cloud(50, 2, 1));
-  CHECK(fluid.walls.mirror.extent(0) == 0);
+  CHECK(fluid.walls.mirror.extent(0) + fluid.walls.panel.extent(0) == 0);
   CHECK(fluid.rows.images.first.extent(0) == 0);
 }

@@ -1,0 +1,238 @@
+// Corners of any angle, in 2-D and 3-D: n = n^0, and a matrix that CG can solve.
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+
+#include "core/check.hpp"
+#include "kernels/wall_panels.hpp"
+#include "tests/shapes.hpp"
+
+using namespace greenwater;
+using namespace greenwater::test;
+
+namespace {
+
+constexpr double degree = M_PI / 180;
+
+// A pattern of points that is the same after reflection in every line through the origin at a multiple of 180 / folds
+// degrees, folds 4 or 6: any two of those lines make a corner in which n must be what it is without walls.
+Positions pattern(int folds, double cell, double size) {
+  const double s = folds == 6 ? std::sin(60 * degree) : 1, c = folds == 6 ? 0.5 : 0;
+  Positions x;
+  const int many = static_cast<int>(size / cell / s) + 3;
+  for (int a = -many; a <= many; ++a)
+    for (int b = -2 * many; b <= 2 * many; ++b)
+      for (const auto& [radius, angle] : {std::pair{0.21, 11.0}, std::pair{0.36, 21.0}, std::pair{0.47, 4.0}})
+        for (int k = 0; k < folds; ++k)
+          for (const int side : {1, -1}) {
+            const double at = (side * angle + k * 360.0 / folds) * degree;
+            const double px = cell * (b + a * c + radius * std::cos(at)), py = cell * (a * s + radius * std::sin(at));
+            if (std::hypot(px, py) < size) x.push_back({px, py, 0});
+          }
+  return x;
+}
+
+// Largest |n - n_free| / n_free over the particles within `size` of the corner; those of `free` come in the same order.
+double error_against(const Fluid& fluid, const std::vector<double>& free, const Positions& at, double size) {
+  const auto n = by_id(fluid, fluid.particles.number_density);
+  double error = 0;
+  int looked_at = 0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (std::hypot(at[i][0], at[i][1]) > size) continue;
+    error = std::max(error, std::fabs(n[i] / free[i] - 1));
+    ++looked_at;
+  }
+  REQUIRE(looked_at > 10);
+  return error;
+}
+
+Positions layers(const Positions& flat, int count, coord thickness) {
+  Positions x;
+  for (int k = 0; k < count; ++k)
+    for (auto point : flat) {
+      point[2] = (k + 0.5) * thickness;
+      x.push_back(point);
+    }
+  return x;
+}
+
+real options_n0(const FluidOptions& options) {
+  return lattice_reference({static_cast<real>(options.radius * options.spacing), options.shift}, options.dim,
+                           options.spacing)
+      .n0;
+}
+
+std::vector<double> density_without_walls(const Positions& at, const Positions& all, const FluidOptions& options) {
+  const Fluid fluid = fluid_at(all, {}, options);
+  const auto n = by_id(fluid, fluid.particles.number_density);
+  std::vector<double> wanted;
+  for (const auto& x : at) wanted.push_back(n[std::find(all.begin(), all.end(), x) - all.begin()]);
+  return wanted;
+}
+
+Eigen::MatrixXd matrix_of(Fluid& fluid) {
+  mark_surface(fluid, real(0.6));
+  PressureSystem system({});
+  system.assemble(fluid, real(1e-3));
+  const Eigen::MatrixXd all = dense(system);
+  const auto surface = host(fluid.particles.surface);
+  std::vector<int> active;
+  for (int i = 0; i < fluid.particles.count; ++i)
+    if (!surface(i)) active.push_back(i);
+  return all(active, active);
+}
+
+void check_matrix(Fluid& fluid) {
+  const Eigen::MatrixXd A = matrix_of(fluid);
+  REQUIRE(A.rows() > 40);
+  REQUIRE(A.rows() < fluid.particles.count);  // some surface: without it a constant has no slope
+  CHECK((A - A.transpose()).cwiseAbs().maxCoeff() <= 1e-15 * A.cwiseAbs().maxCoeff());
+  CHECK(Eigen::LLT<Eigen::MatrixXd>(A).info() == Eigen::Success);  // no pivot that is not above 0
+}
+
+FluidOptions options_in(int dim, coord spacing, coord radius) {
+  FluidOptions options;
+  options.dim = dim;
+  options.spacing = spacing;
+  options.radius = radius;
+  return options;
+}
+
+// A plate bent at two points, clear of everything.
+WallFaces bent_plate() {
+  return walls_of({segment(0.3, 0.2, 0.5, 0.55), segment(0.5, 0.55, 0.55, 0.9), segment(0.55, 0.9, 0.85, 1.2)});
+}
+
+}  // namespace
+
+TEST_CASE("n in a corner of a symmetric pattern is what it is without walls", "[unit][corners]") {
+  const double cell = 0.35, reach = 0.31, size = 0.9;
+  const auto options = options_in(2, 0.1, 3.1);
+  for (const int angle : {30, 45, 60, 90, 120, 135, 150, 180}) {
+    INFO("corner of " << angle << " degrees");
+    const Positions all = pattern(angle % 45 == 0 && angle < 180 ? 4 : 6, cell, size + reach);
+    const Positions at = only(all, [&](const auto& x) { return in_wedge(x, angle * degree); });
+    const auto wanted = density_without_walls(at, all, options);
+    const Fluid fluid = fluid_at(at, wedge(angle * degree, 3), options);
+    CHECK(error_against(fluid, wanted, at, size - 0.01) < 1e-12);
+  }
+}
+
+TEST_CASE("n in the edges of a symmetric pattern with floor and lid, turned in space", "[unit][corners]") {
+  const double cell = 0.35, reach = 0.21, size = 0.5;
+  const auto options = options_in(3, 0.1, 2.1);
+  const Turn turn = turn_about(0.6, {1, 2, -0.5});
+  for (const int angle : {30, 45, 60, 90, 120, 135, 150}) {
+    INFO("edge of " << angle << " degrees");
+    const Positions flat = pattern(angle % 45 == 0 ? 4 : 6, cell, size + reach);
+    const Positions flat_at = only(flat, [&](const auto& x) { return in_wedge(x, angle * degree); });
+    // Three layers between floor and lid are as nine: what those in the middle have, all three have.
+    const Fluid endless = fluid_at(layers(flat, 9, 0.1), {}, options);
+    const auto n = by_id(endless, endless.particles.number_density);
+    std::vector<double> free;
+    for (int k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < flat.size(); ++i)
+        if (in_wedge(flat[i], angle * degree)) free.push_back(n[4 * flat.size() + i]);
+    WallFaces walls = drawn_up(wedge(angle * degree, 3), 0.3);
+    add_ends(walls, -3, 3, 0.3);
+    const Positions at = layers(flat_at, 3, 0.1);
+    const Fluid fluid = fluid_at(turned(turn, at), turned(turn, walls), options);
+    CHECK(error_against(fluid, free, at, size - 0.01) < 1e-12);
+  }
+}
+
+TEST_CASE("n = n0 in the edges and corners of a box", "[unit][corners]") {
+  for (const coord radius : {2.1, 3.1}) {
+    const auto options = options_in(3, 0.1, radius);
+    const Positions at = lattice_3d(8, 7, 10, 0.1);
+    const Turn turn = turn_about(17 * degree, {0.3, 1, 0.2});
+    for (const Turn& way : {turn_about(0), turn}) {
+      const Fluid fluid = fluid_at(turned(way, at), turned(way, open_box(0.8, 0.7, 2)), options);
+      const auto n = by_id(fluid, fluid.particles.number_density);
+      double error = 0;
+      for (std::size_t i = 0; i < at.size(); ++i)
+        if (at[i][2] < 1 - radius * 0.1) error = std::max(error, std::fabs(n[i] / options_n0(options) - 1));
+      CHECK(error < 1e-12);
+    }
+  }
+}
+
+TEST_CASE("n = n0 within 1 % in corners cut out of a lattice", "[validation][corners]") {
+  // The lattice does not fit to the second wall: what is left is the error of cutting it, which falls with the spacing,
+  // so the radius is wide; wider where more images repeat the cut.
+  for (const auto& [angle, radius] :
+       {std::pair{30, 44.0}, std::pair{60, 36.0}, std::pair{120, 30.0}, std::pair{150, 30.0}}) {
+    const coord l0 = 0.6 / radius;
+    const double turn = angle * degree;
+    const auto inside = [=](const auto& x) { return in_wedge(x, turn) && std::hypot(x[0], x[1]) < 1.3; };
+    const Positions at = only(lattice(static_cast<int>(2.8 / l0), static_cast<int>(1.4 / l0), l0, -1.4, 0), inside);
+    const Fluid fluid = fluid_at(at, wedge(angle * degree, 3), options_in(2, l0, radius));
+    const auto n = by_id(fluid, fluid.particles.number_density);
+    double error = 0, mean = 0;
+    int looked_at = 0;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (std::hypot(at[i][0], at[i][1]) > 0.6) continue;
+      error = std::max(error, std::fabs(n[i] / fluid.density.reference.n0 - 1));
+      mean += n[i] / fluid.density.reference.n0 - 1;
+      ++looked_at;
+    }
+    std::cout << "corner of " << angle << " degrees: n / n0 - 1 is at most " << error << ", " << mean / looked_at
+              << " in the mean of " << looked_at << " particles\n";
+    CHECK(error < 0.01);
+  }
+}
+
+TEST_CASE("the matrix is symmetric and positive definite in corners of any angle", "[unit][corners]") {
+  for (const double angle : {30.0, 60.0, 87.0, 93.0, 135.0, 175.0})
+    for (const unsigned seed : {1u, 2u}) {
+      INFO("corner of " << angle << " degrees");
+      const auto inside = [&](const auto& x) { return in_wedge(x, angle * degree) && std::hypot(x[0], x[1]) < 0.9; };
+      Positions at = random_cloud(2500, 2, seed, 3);
+      for (auto& x : at) x[0] -= 1.5;
+      Fluid flat = fluid_at(only(at, inside), wedge(angle * degree, 3), options_in(2, 0.06, 3.1));
+      check_matrix(flat);
+      at = random_cloud(3200, 3, seed, 2.4);
+      for (auto& x : at) x = {x[0] - 1.2, x[1], x[2] / 4};
+      WallFaces walls = drawn_up(wedge(angle * degree, 3), 0.6);
+      add_ends(walls, -3, 3, 0.6);
+      const Turn turn = turn_about(0.6, {1, 2, -0.5});
+      Fluid deep =
+          fluid_at(turned(turn, only(at, [&](const auto& x) { return inside(x) && std::hypot(x[0], x[1]) < 0.9; })),
+                   turned(turn, walls), options_in(3, 0.1, 2.1));
+      check_matrix(deep);
+    }
+}
+
+TEST_CASE("the matrix is symmetric and positive definite round a bent plate", "[unit][corners]") {
+  for (const unsigned seed : {1u, 2u, 3u}) {
+    Fluid flat = fluid_at(random_cloud(700, 2, seed, 1.4), bent_plate(), options_in(2, 0.06, 3.1));
+    check_matrix(flat);
+    Positions at = random_cloud(900, 3, seed, 1.4);
+    for (auto& x : at) x[2] *= 0.4;
+    WallFaces walls = drawn_up(bent_plate(), 0.4);  // free ends above and at the sides, a floor below
+    add_rectangle(walls, {-1, -1, 0}, {3, -1, 0}, {3, 3, 0}, {-1, 3, 0});
+    Fluid deep = fluid_at(at, walls, options_in(3, 0.12, 2.1));
+    check_matrix(deep);
+  }
+}
+
+TEST_CASE("corners sharper than 5 degrees are refused in words", "[unit][corners]") {
+  CHECK_THROWS_WITH(fluid_at({{1, 0.01, 0}}, wedge(3 * degree, 3), options_in(2, 0.1, 3.1)),
+                    Catch::Contains("\"a\" and \"b\" meet at 3 degrees") && Catch::Contains("open the corner"));
+}
+
+TEST_CASE("coplanar triangles are one wall: one image across their common edge", "[unit][walls]") {
+  WallFaces floor{3, {}, {{"floor"}}};
+  add_rectangle(floor, {-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0});
+  const WallPanels made = find_panels(floor, 1e-9);
+  CHECK(made.panels.size() == 1);
+  CHECK(made.mirrors.size() == 1);
+  const Fluid fluid = fluid_at({{0, 0, 0.05}, {0.1, -0.1, 0.05}}, floor, options_in(3, 0.1, 3.1));
+  CHECK(fluid.rows.images.entries == 4);
+}
+
+TEST_CASE("a box of triangles has five walls, eight edges and four corners", "[unit][walls]") {
+  const WallPanels made = find_panels(open_box(1, 1, 1), 1e-9);
+  CHECK(made.panels.size() == 5);
+  CHECK(made.mirrors.size() == 5 + 8 + 4);
+}
