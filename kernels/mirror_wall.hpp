@@ -155,12 +155,11 @@ struct Sight {
     return true;
   }
 
-  /// The share with which a sees the image of b in mirror number k (and b that of a in its reverse): 1 as a rule, less
-  /// where the path passes close to the edge of a corner, 0 where it is not seen. a may be b: its own image.
+  /// The share with which a sees the image of b in mirror number k (and b that of a in its reverse), given that it has a
+  /// distance: 1 as a rule, less where the path passes close to the edge of a corner, 0 where it is not seen. a may be b:
+  /// its own image.
   KOKKOS_INLINE_FUNCTION real sees_image(int k, const Point& a, const Point& b) const {
     const Mirror& m = mirror[k];
-    for (int e = 0; e < 3 && m.also[e] >= 0; ++e)
-      if (!(side(panel[m.also[e]], a) * side(panel[m.also[e]], b) > 0)) return 0;
     Spared spared;
     coord share = 1;
     if (m.length > 1) {
@@ -169,7 +168,6 @@ struct Sight {
       spared.add(joint[m.joint].panel[0]);
       spared.add(joint[m.joint].panel[1]);
     } else if (m.length == 1) {
-      if (!(side(panel[m.panel], a) * side(panel[m.panel], b) > 0)) return 0;
       share *= share_of_panel(m.panel, a, b, spared);
     }
     for (int e = 0; e < 3 && m.also[e] >= 0; ++e) share *= share_of_panel(m.also[e], a, b, spared);
@@ -181,23 +179,29 @@ struct Sight {
     return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
   }
 
-  /// Nobody at x sees anything in this mirror within `radius`.
-  KOKKOS_INLINE_FUNCTION bool out_of_reach(const Mirror& m, const Point& x, coord radius) const {
-    coord away2 = 0;  // of a right-angled corner; an image is at least as far as its corner is
-    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) {
-      const coord s = side(panel[m.also[e]], x);
-      away2 += s * s;
+  /// Square of the distance from a to the image of b [m^2], which are sqrt(r2) apart; infinite where a wall of the path
+  /// is not between them. The same number from b to the image of a in the reverse.
+  KOKKOS_INLINE_FUNCTION coord image_distance2(int k, const Point& a, const Point& b, coord r2) const {
+    constexpr coord nowhere = 1e300;
+    const Mirror& m = mirror[k];
+    if (m.length > 1) {
+      const Joint& q = joint[m.joint];
+      if (!(side(panel[q.panel[0]], a) * side(panel[q.panel[0]], b) > 0)) return nowhere;
+      const auto way = difference(image_position(m, b), a);
+      return dot(way, way);
     }
+    // Walls at right angles to each other add up: |a - b'|^2 = |a - b|^2 + 4 s_a s_b.
     if (m.length == 1) {
-      const coord s = side(panel[m.panel], x);
-      away2 += s * s;
+      const coord both = side(panel[m.panel], a) * side(panel[m.panel], b);
+      if (!(both > 0)) return nowhere;
+      r2 += 4 * both;
     }
-    if (away2 >= radius * radius) return true;
-    if (m.length <= 1) return false;
-    const Joint& q = joint[m.joint];
-    coord angle;
-    return fabs(side(panel[q.panel[0]], x)) >= radius || fabs(side(panel[q.panel[1]], x)) >= radius ||
-           !inside(q, x, angle);
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) {
+      const coord both = side(panel[m.also[e]], a) * side(panel[m.also[e]], b);
+      if (!(both > 0)) return nowhere;
+      r2 += 4 * both;
+    }
+    return r2;
   }
 
  private:

@@ -42,22 +42,23 @@ struct Search {
   KOKKOS_INLINE_FUNCTION void images(int i, F f) const {
     const auto xi = load<Dim>(x, i);
     const auto sight = sight_from(walls, grid, xi);
-    for (int m = sight.begin; m < sight.end; ++m) {
-      const int k = walls.reach(m);
-      const Mirror& mirror = walls.mirror(k);
-      if (sight.out_of_reach(mirror, xi, radius)) continue;
-      for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
-        const auto xj = load<Dim>(x, j);
-        // Always from the lower index: the same number for both, to the last bit.
-        const bool forward = i <= j;
-        const int way = forward ? k : mirror.reverse;
-        const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
-        const coord r2 = distance2(a, image_position(walls.mirror(way), b));
-        if (!within_reach(r2)) return;
+    if (sight.begin == sight.end) return;
+    for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
+      const auto xj = load<Dim>(x, j);
+      const coord r2 = distance2(xi, xj);
+      if (!within_reach(r2)) return;  // a path by way of walls is longer than the straight one
+      // Always from the lower index: the same number for both, to the last bit.
+      const bool forward = i <= j;
+      const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
+      for (int m = sight.begin; m < sight.end; ++m) {
+        const int k = sight.reach[m];
+        const int way = forward ? k : sight.mirror[k].reverse;
+        const coord image_r2 = sight.image_distance2(way, a, b, r2);
+        if (!within_reach(image_r2)) continue;
         const real share = sight.sees_image(way, a, b);
-        if (share > 0) f(j, k, r2, share);
-      });
-    }
+        if (share > 0) f(j, k, image_r2, share);
+      }
+    });
   }
 };
 

@@ -11,6 +11,8 @@ using namespace greenwater::test;
 
 namespace {
 
+using Point = std::array<coord, 3>;
+
 constexpr coord l0 = 0.1;
 
 FluidOptions options_with(coord radius, real shift) {
@@ -89,6 +91,33 @@ TEST_CASE("nothing is seen through a plate, and round its free end it is", "[uni
   CHECK(fluid_at(low, plate, options_with(3.1, 0)).rows.images.entries == 2);  // each its own image
   CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.near.entries == 2);
   CHECK(fluid_at(high, plate, options_with(3.1, 0)).rows.images.entries == 0);
+}
+
+TEST_CASE("a plate in 3-D is wet on both sides, and seen round at its three free edges", "[unit][walls]") {
+  // The rectangle x = 1, 0 < y < 1, 0 < z < 1 on the floor z = 0; twins on both sides of it.
+  WallFaces walls{3, {}, {{"floor"}, {"plate"}}};
+  const auto rectangle = [&](const Point& a, const Point& b, const Point& c, const Point& d, int body) {
+    for (const auto& [p, q] : {std::pair{b, c}, std::pair{c, d}}) {
+      WallFace face;
+      face.corner[0].position = a;
+      face.corner[1].position = p;
+      face.corner[2].position = q;
+      face.body = body;
+      walls.faces.push_back(face);
+    }
+  };
+  rectangle({-1, -1, 0}, {3, -1, 0}, {3, 3, 0}, {-1, 3, 0}, 0);
+  rectangle({1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}, 1);
+  FluidOptions options = options_with(3.1, 0);
+  options.dim = 3;
+  const auto twins = [&](coord y, coord z) { return fluid_at({{0.95, y, z}, {1.05, y, z}}, walls, options); };
+  CHECK(twins(0.5, 0.5).rows.near.entries == 0);
+  CHECK(twins(0.5, 0.5).rows.images.entries == 2);   // each its own image
+  CHECK(twins(0.5, 0.05).rows.images.entries == 6);  // and in the floor, and in the corner
+  for (const auto& [y, z] : {std::pair{0.5, 1.05}, std::pair{-0.05, 0.5}, std::pair{1.05, 0.5}}) {
+    CHECK(twins(y, z).rows.near.entries == 2);
+    CHECK(twins(y, z).rows.images.entries == 0);
+  }
 }
 
 TEST_CASE("an image by way of the floor is not seen through a plate that stands on it", "[unit][walls]") {
