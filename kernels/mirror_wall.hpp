@@ -43,6 +43,7 @@ struct Piece {
 struct Panel {
   coord normal[3];              // unit
   coord point[3];               // its first corner [m]
+  coord middle[3], extent;      // of its bounds, and no corner is farther from there [m]
   int first_piece, last_piece;  // its pieces, the last one excluded
   int first_joint, last_joint;  // its corners, as places in MirrorWalls::joint_of_panel
   int body;                     // named geometry
@@ -179,6 +180,22 @@ struct Sight {
     return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
   }
 
+  /// Leaves out the walls and corners that nobody at x can reach within `radius`, when there are many and the rest fits
+  /// into `room`.
+  KOKKOS_INLINE_FUNCTION void narrow(const Point& x, coord radius, int* room, int capacity) {
+    constexpr int few = 6;
+    if (end - begin <= few) return;
+    int count = 0;
+    for (int k = begin; k < end; ++k) {
+      if (!within(mirror[reach[k]], x, radius)) continue;
+      if (count == capacity) return;
+      room[count++] = reach[k];
+    }
+    reach = room;
+    begin = 0;
+    end = count;
+  }
+
   /// Square of the distance from a to the image of b [m^2], which are sqrt(r2) apart; infinite where a wall of the path
   /// is not between them. The same number from b to the image of a in the reverse.
   KOKKOS_INLINE_FUNCTION coord image_distance2(int k, const Point& a, const Point& b, coord r2) const {
@@ -205,6 +222,20 @@ struct Sight {
   }
 
  private:
+  KOKKOS_INLINE_FUNCTION bool within(const Panel& p, const Point& x, coord radius) const {
+    const auto r = difference(x, as_vec(p.middle));
+    const coord most = p.extent + radius;
+    return fabs(side(p, x)) < radius && dot(r, r) < most * most;
+  }
+
+  KOKKOS_INLINE_FUNCTION bool within(const Mirror& m, const Point& x, coord radius) const {
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e)
+      if (!within(panel[m.also[e]], x, radius)) return false;
+    if (m.length == 0) return true;
+    if (m.length == 1) return within(panel[m.panel], x, radius);
+    return within(panel[joint[m.joint].panel[0]], x, radius) && within(panel[joint[m.joint].panel[1]], x, radius);
+  }
+
   // Panels that a path touches by right: they do not hide it from anybody.
   struct Spared {
     int panel[8];

@@ -13,6 +13,8 @@ struct Search {
   Weight weight;
   coord radius;  // of the search [m]
 
+  static constexpr int capacity = 96;  // walls and corners near one particle; with more it goes on, slower
+
   KOKKOS_INLINE_FUNCTION static coord distance2(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) {
     const auto r = difference(b, a);
     return dot(r, r);
@@ -26,7 +28,9 @@ struct Search {
   template <class F>
   KOKKOS_INLINE_FUNCTION void neighbours(int i, F f) const {
     const auto xi = load<Dim>(x, i);
-    const auto sight = sight_from(walls, grid, xi);
+    auto sight = sight_from(walls, grid, xi);
+    int room[capacity];
+    sight.narrow(xi, radius, room, capacity);
     const bool in_the_open = sight.begin == sight.end;
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
       if (j == i) return;
@@ -41,7 +45,9 @@ struct Search {
   template <class F>
   KOKKOS_INLINE_FUNCTION void images(int i, F f) const {
     const auto xi = load<Dim>(x, i);
-    const auto sight = sight_from(walls, grid, xi);
+    auto sight = sight_from(walls, grid, xi);
+    int room[capacity];
+    sight.narrow(xi, radius, room, capacity);
     if (sight.begin == sight.end) return;
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
       const auto xj = load<Dim>(x, j);

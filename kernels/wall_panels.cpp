@@ -162,6 +162,8 @@ std::vector<Bounds> make_panels(const WallFaces& walls, const std::vector<Raw>& 
       bounds.back().take_in(raw[i].bounds);
     }
     panel.last_piece = static_cast<int>(made.pieces.size());
+    put(panel.middle, (bounds.back().low + bounds.back().high) / 2);
+    panel.extent = (bounds.back().high - bounds.back().low).norm() / 2;
     made.panels.push_back(panel);
   }
   return bounds;
