@@ -180,11 +180,8 @@ struct Sight {
     return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
   }
 
-  /// Leaves out the walls and corners that nobody at x can reach within `radius`, when there are many and the rest fits
-  /// into `room`.
+  /// Leaves out the walls and corners that nobody at x can reach within `radius`, if the rest fits into `room`.
   KOKKOS_INLINE_FUNCTION void narrow(const Point& x, coord radius, int* room, int capacity) {
-    constexpr int few = 6;
-    if (end - begin <= few) return;
     int count = 0;
     for (int k = begin; k < end; ++k) {
       if (!within(mirror[reach[k]], x, radius)) continue;
