@@ -198,24 +198,18 @@ struct Sight {
   KOKKOS_INLINE_FUNCTION coord image_distance2(int k, const Point& a, const Point& b, coord r2) const {
     constexpr coord nowhere = 1e300;
     const Mirror& m = mirror[k];
-    if (m.length > 1) {
-      const Joint& q = joint[m.joint];
-      if (!(side(panel[q.panel[0]], a) * side(panel[q.panel[0]], b) > 0)) return nowhere;
-      const auto way = difference(image_position(m, b), a);
-      return dot(way, way);
-    }
     // Walls at right angles to each other add up: |a - b'|^2 = |a - b|^2 + 4 s_a s_b.
-    if (m.length == 1) {
-      const coord both = side(panel[m.panel], a) * side(panel[m.panel], b);
-      if (!(both > 0)) return nowhere;
-      r2 += 4 * both;
-    }
     for (int e = 0; e < 3 && m.also[e] >= 0; ++e) {
       const coord both = side(panel[m.also[e]], a) * side(panel[m.also[e]], b);
       if (!(both > 0)) return nowhere;
       r2 += 4 * both;
     }
-    return r2;
+    if (m.length == 0) return r2;
+    const coord both = side(panel[m.panel], a) * side(panel[m.panel], b);
+    if (!(both > 0)) return nowhere;
+    if (m.length == 1) return r2 + 4 * both;
+    const auto way = difference(image_position(m, b), a);
+    return dot(way, way);
   }
 
  private:

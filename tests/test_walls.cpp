@@ -120,6 +120,34 @@ TEST_CASE("a plate in 3-D is wet on both sides, and seen round at its three free
   }
 }
 
+TEST_CASE("nothing is seen by way of a corner through the wall that ends it", "[unit][walls]") {
+  // A trough of 60 degrees along z; the wall z = 1 parts it. Whoever sees an image by way of the part's own walls only.
+  WallFaces trough{3, {}, {{"trough"}}};
+  const coord c = std::cos(M_PI / 3) * 3, s = std::sin(M_PI / 3) * 3;
+  const auto add = [&](const Point& a, const Point& b, const Point& p) {
+    WallFace face;
+    face.corner[0].position = a;
+    face.corner[1].position = b;
+    face.corner[2].position = p;
+    trough.faces.push_back(face);
+  };
+  add({0, 0, 0}, {3, 0, 0}, {3, 0, 2});
+  add({0, 0, 0}, {3, 0, 2}, {0, 0, 2});
+  add({0, 0, 0}, {c, s, 0}, {c, s, 2});
+  add({0, 0, 0}, {c, s, 2}, {0, 0, 2});
+  const WallFaces open = trough;
+  add({0, 0, 1}, {3, 0, 1}, {c, s, 1});
+  FluidOptions options = options_with(3.1, 0);
+  options.dim = 3;
+  const Positions both{{0.1, 0.05, 0.95}, {0.1, 0.06, 1.05}};
+  const Fluid parted = fluid_at(both, trough, options);
+  const Fluid alone = fluid_at({both[0]}, trough, options);
+  CHECK(fluid_at(both, open, options).rows.near.entries == 2);
+  CHECK(parted.rows.near.entries == 0);
+  CHECK(parted.rows.images.entries % 2 == 0);
+  CHECK(host(alone.rows.images.first)(1) == host(parted.rows.images.first)(1));  // the other one adds nothing
+}
+
 TEST_CASE("an image by way of the floor is not seen through a plate that stands on it", "[unit][walls]") {
   // Mirror twins beside the foot: the way by the floor meets the plate exactly at its foot.
   const auto walls = walls_of({segment(0, 0, 2, 0), segment(1, 0, 1, 1)});
