@@ -4,14 +4,12 @@
 
 #include "core/check.hpp"
 #include "kernels/wall_panels.hpp"
-#include "tests/support.hpp"
+#include "tests/shapes.hpp"
 
 using namespace greenwater;
 using namespace greenwater::test;
 
 namespace {
-
-using Point = std::array<coord, 3>;
 
 constexpr coord l0 = 0.1;
 
@@ -96,18 +94,8 @@ TEST_CASE("nothing is seen through a plate, and round its free end it is", "[uni
 TEST_CASE("a plate in 3-D is wet on both sides, and seen round at its three free edges", "[unit][walls]") {
   // The rectangle x = 1, 0 < y < 1, 0 < z < 1 on the floor z = 0; twins on both sides of it.
   WallFaces walls{3, {}, {{"floor"}, {"plate"}}};
-  const auto rectangle = [&](const Point& a, const Point& b, const Point& c, const Point& d, int body) {
-    for (const auto& [p, q] : {std::pair{b, c}, std::pair{c, d}}) {
-      WallFace face;
-      face.corner[0].position = a;
-      face.corner[1].position = p;
-      face.corner[2].position = q;
-      face.body = body;
-      walls.faces.push_back(face);
-    }
-  };
-  rectangle({-1, -1, 0}, {3, -1, 0}, {3, 3, 0}, {-1, 3, 0}, 0);
-  rectangle({1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}, 1);
+  add_rectangle(walls, {-1, -1, 0}, {3, -1, 0}, {3, 3, 0}, {-1, 3, 0}, 0);
+  add_rectangle(walls, {1, 0, 0}, {1, 1, 0}, {1, 1, 1}, {1, 0, 1}, 1);
   FluidOptions options = options_with(3.1, 0);
   options.dim = 3;
   const auto twins = [&](coord y, coord z) { return fluid_at({{0.95, y, z}, {1.05, y, z}}, walls, options); };
@@ -122,21 +110,9 @@ TEST_CASE("a plate in 3-D is wet on both sides, and seen round at its three free
 
 TEST_CASE("nothing is seen by way of a corner through the wall that ends it", "[unit][walls]") {
   // A trough of 60 degrees along z; the wall z = 1 parts it. Whoever sees an image by way of the part's own walls only.
-  WallFaces trough{3, {}, {{"trough"}}};
-  const coord c = std::cos(M_PI / 3) * 3, s = std::sin(M_PI / 3) * 3;
-  const auto add = [&](const Point& a, const Point& b, const Point& p) {
-    WallFace face;
-    face.corner[0].position = a;
-    face.corner[1].position = b;
-    face.corner[2].position = p;
-    trough.faces.push_back(face);
-  };
-  add({0, 0, 0}, {3, 0, 0}, {3, 0, 2});
-  add({0, 0, 0}, {3, 0, 2}, {0, 0, 2});
-  add({0, 0, 0}, {c, s, 0}, {c, s, 2});
-  add({0, 0, 0}, {c, s, 2}, {0, 0, 2});
-  const WallFaces open = trough;
-  add({0, 0, 1}, {3, 0, 1}, {c, s, 1});
+  const WallFaces open = drawn_up(wedge(M_PI / 3, 3), 2);
+  WallFaces trough = open;
+  trough.faces.push_back(triangle({0, 0, 1}, {3, 0, 1}, {3 * std::cos(M_PI / 3), 3 * std::sin(M_PI / 3), 1}));
   FluidOptions options = options_with(3.1, 0);
   options.dim = 3;
   const Positions both{{0.1, 0.05, 0.95}, {0.1, 0.06, 1.05}};
