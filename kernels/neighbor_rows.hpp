@@ -4,7 +4,7 @@
 // further, and pays for it in every sum).
 
 #include "kernels/cell_grid.hpp"
-#include "kernels/mirror_wall.hpp"
+#include "kernels/sight.hpp"
 #include "kernels/weight.hpp"
 
 namespace greenwater {
