@@ -94,7 +94,6 @@ void bench(coord l0, bool first) {
   Fluid fluid = column(l0);
   fluid.grid.sort(fluid.particles);
   fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
-  number_density(fluid);
   mark_surface(fluid, real(0.97));
   PressureOptions options;
   options.diagonal_factor = real(1.05);
@@ -111,7 +110,6 @@ void bench(coord l0, bool first) {
   const auto medians = time_in_turn({
       {"sort", [&] { fluid.grid.sort(fluid.particles); }},
       {"rows", [&] { fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid)); }},
-      {"number_density", [&] { number_density(fluid); }},
       {"assemble", [&] { kept.assemble(fluid, dt); }},
       {"apply_kept", [&] { kept.apply(p, Ap); }},
       {"apply_recomputed", [&] { recomputed.apply(p, Ap); }},

@@ -96,7 +96,6 @@ inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const Fl
   fluid.particles = particles_at(at, options.dim);
   fluid.grid.sort(fluid.particles);
   fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
-  number_density(fluid);
   return fluid;
 }
 
