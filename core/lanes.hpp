@@ -168,6 +168,10 @@ inline V sqrt(const V& v) {
     V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)positive);
     for (int step = 0; step < 2; ++step) y += y * (0.5 - 0.5 * positive * y * y);
     return v * y;
+  } else if constexpr (std::is_same<V, Lanes<float, 8>>::value) {
+    return (V)_mm256_maskz_sqrt_ps(0xff, (__m256)v);
+  } else if constexpr (std::is_same<V, Lanes<float, 16>>::value) {
+    return (V)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
   }
 #endif
   V root{};
