@@ -117,6 +117,20 @@ KOKKOS_INLINE_FUNCTION bool any_lane(const Mask& yes) {
   }
 }
 
+/// The sum of all lanes, in accum.
+template <class V>
+KOKKOS_INLINE_FUNCTION accum sum_lanes(const V& v) {
+  if constexpr (is_scalar<V>) {
+    return v;
+  } else {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(v[0]));
+    const auto wide = __builtin_convertvector(v, Lanes<accum, width>);
+    accum sum = 0;
+    for (int l = 0; l < width; ++l) sum += wide[l];
+    return sum;
+  }
+}
+
 template <class V, typename std::enable_if<!is_scalar<V>, int>::type = 0>
 inline V sqrt(const V& v) {
 #ifdef GREENWATER_GATHER

@@ -105,6 +105,8 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
     flat ? divergence_source_in<2>(fluid, dt, rhs_) : divergence_source_in<3>(fluid, dt, rhs_);
 }
 
+real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
+
 void PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);
   if (fluid_->keep_weights)

@@ -34,6 +34,8 @@ class PressureSystem {
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
   const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
   const FlagField& fixed() const { return fluid_->particles.surface; }
+  const Fluid& fluid() const { return *fluid_; }
+  real factor() const;  // K [1/m^2]
 
  private:
   PressureOptions options_;
