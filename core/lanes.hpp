@@ -4,14 +4,15 @@
 //
 // Compilers vectorise the loops over neighbours badly or not at all: their lengths differ from particle to particle, and
 // loops over lanes with a constant trip are unrolled before they are looked at. So the vectors are spelt out, with the
-// vector types that g++ and clang++ share; only gathering has instructions of its own.
+// vector types that g++ and clang++ share. What these cannot say has instructions of its own where the CPU has AVX-512
+// (GREENWATER_VECTORS), and loops elsewhere: the only file with such instructions.
 
 #include <type_traits>
 
 #include "core/fields.hpp"
 
-#if defined(__AVX512F__) && !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
-#define GREENWATER_GATHER 1
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
+#define GREENWATER_VECTORS 1
 #include <immintrin.h>
 #endif
 
@@ -105,15 +106,18 @@ KOKKOS_INLINE_FUNCTION V zero_unless(const Mask& yes, const V& v) {
   return yes ? v : V{};
 }
 
-/// Is it so in any lane?
+/// Bit l is set where it is so in lane l.
 template <class Mask>
-KOKKOS_INLINE_FUNCTION bool any_lane(const Mask& yes) {
+KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
   if constexpr (is_scalar<Mask>) {
-    return yes;
+    return yes ? 1 : 0;
   } else {
-    std::remove_cv_t<std::remove_reference_t<decltype(Mask{}[0])>> found = 0;
-    for (std::size_t l = 0; l < sizeof(Mask) / sizeof(yes[0]); ++l) found |= yes[l];
-    return found != 0;
+#ifdef GREENWATER_VECTORS
+    if constexpr (sizeof(Mask) == 64 && sizeof(yes[0]) == 8) return _mm512_movepi64_mask((__m512i)yes);
+#endif
+    unsigned bits = 0;
+    for (std::size_t l = 0; l < sizeof(Mask) / sizeof(yes[0]); ++l) bits |= (yes[l] ? 1u : 0u) << l;
+    return bits;
   }
 }
 
@@ -131,11 +135,54 @@ KOKKOS_INLINE_FUNCTION accum sum_lanes(const V& v) {
   }
 }
 
+/// Is it so in any lane?
+template <class Mask>
+KOKKOS_INLINE_FUNCTION bool any_lane(const Mask& yes) {
+  return lane_bits(yes) != 0;
+}
+
+/// Writes the lanes whose bits are set side by side to `to`, which needs room for all lanes. On a host.
+template <class V, class T>
+inline void compress_lanes(unsigned bits, const V& v, T* to) {
+#ifdef GREENWATER_VECTORS
+  // Compressed in the register: compressing on the way to memory is many times slower on some CPUs.
+  if constexpr (std::is_same<V, Lanes<double, 8>>::value)
+    return _mm512_storeu_pd(to, _mm512_maskz_compress_pd(static_cast<__mmask8>(bits), (__m512d)v));
+  else if constexpr (std::is_same<V, Lanes<int, 8>>::value)
+    return _mm256_storeu_si256((__m256i*)to, _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), (__m256i)v));
+#endif
+  int n = 0;
+  for (std::size_t l = 0; l < sizeof(V) / sizeof(v[0]); ++l) {  // without branches, which nobody could foretell
+    to[n] = v[l];
+    n += (bits >> l) & 1u;
+  }
+}
+
+/// 1 / v, to the last bit or two, for v in the middle of the range of its type.
+/// Dividing or taking a root of a vector of doubles takes a CPU twenty cycles; an estimate and two of Newton's steps take
+/// five.
+template <class V>
+KOKKOS_INLINE_FUNCTION V inverse(const V& v) {
+#ifdef GREENWATER_VECTORS
+  if constexpr (std::is_same<V, Lanes<double, 8>>::value) {
+    V y = (V)_mm512_maskz_rcp14_pd(0xff, (__m512d)v);
+    for (int step = 0; step < 2; ++step) y += y * (1 - v * y);
+    return y;
+  }
+#endif
+  return 1 / v;
+}
+
+/// Square root, to the last bit or two; 0 of 0.
 template <class V, typename std::enable_if<!is_scalar<V>, int>::type = 0>
 inline V sqrt(const V& v) {
-#ifdef GREENWATER_GATHER
-  if constexpr (std::is_same<decltype(V{}[0] + 0), double>::value && sizeof(V) == 64)
-    return (V)_mm512_maskz_sqrt_pd(0xff, (__m512d)v);
+#ifdef GREENWATER_VECTORS
+  if constexpr (std::is_same<V, Lanes<double, 8>>::value) {
+    const V positive = larger(v, V{} + 1e-300);
+    V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)positive);
+    for (int step = 0; step < 2; ++step) y += y * (0.5 - 0.5 * positive * y * y);
+    return v * y;
+  }
 #endif
   V root{};
   for (std::size_t l = 0; l < sizeof(V) / sizeof(v[0]); ++l) root[l] = __builtin_sqrt(v[l]);
@@ -168,7 +215,7 @@ KOKKOS_INLINE_FUNCTION V gather_lanes(const T* from, const Index& j) {
   if constexpr (is_scalar<V>) {
     return from[j];
   } else {
-#ifdef GREENWATER_GATHER
+#ifdef GREENWATER_VECTORS
     // In the masked forms, as g++ 12 takes the plain ones for reading what was never written.
     if constexpr (std::is_same<T, double>::value && sizeof(V) == 64)
       return (V)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)j, from, 8);

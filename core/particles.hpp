@@ -29,8 +29,8 @@ struct Particles {
   std::vector<ExtraField> extras;
 };
 
-/// A number of particles made up to whole packs and rows.
-constexpr int padded(int count) { return (count + 31) / 32 * 32; }
+/// A number of particles made up to whole packs and rows, and a pack more, so that one may begin at any particle.
+constexpr int padded(int count) { return (count + 63) / 32 * 32; }
 
 /// Room for `count` particles, all fields zero, ids 0, 1, 2 ...
 Particles make_particles(int dim, int count);

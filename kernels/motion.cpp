@@ -188,7 +188,7 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
           if constexpr (std::decay_t<decltype(image)>::mirrored)
             pj += rho * image.pressure_offset(drive.at(j), gather_pack<Dim>(x, j));
           p_min = select(weight > 0, smaller(p_min, pj), p_min);
-          const auto f = along(Vec<Dim, Pack>{}, weight / larger(r2, all_lanes<Pack>(touching)), r);
+          const auto f = along(Vec<Dim, Pack>{}, weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
           sum_pf = along(sum_pf, pj, f);
           sum_f = along(sum_f, all_lanes<Pack>(real(1)), f);
         });

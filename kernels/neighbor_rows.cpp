@@ -1,6 +1,6 @@
 #include "kernels/neighbor_rows.hpp"
 
-#include "kernels/row_search.hpp"
+#include "kernels/row_build.hpp"
 
 namespace greenwater {
 namespace {
@@ -100,31 +100,65 @@ void grow(Field& field, const std::string& label, std::int64_t size) {
 // A quarter more than is needed now, so that a splash does not regrow the rows at each step.
 std::int64_t roomy(std::int64_t places) { return places + places / 4 + 64 * row_lanes; }
 
-void grow_heads(NeighborRows& rows, IndexField& total, int count, bool walls) {
+void grow_heads(NeighborRows& rows, int count, bool walls) {
   const int room = padded(count), chunks = chunks_of(room);
   grow(rows.near.first, "greenwater::row_first", chunks);
   grow(rows.near.length, "greenwater::row_length", chunks);
   grow(rows.near.number, "greenwater::row_number", room);
   grow(rows.near.weight_sum, "greenwater::row_sum", room);
-  grow(total, "greenwater::row_total", room);
   if (!walls) return;
   grow(rows.images.first, "greenwater::image_first", chunks);
   grow(rows.images.length, "greenwater::image_length", chunks);
   grow(rows.images.number, "greenwater::image_number", room);
 }
 
-void grow_places(NeighborRows& rows, bool keep, bool walls) {
+void grow_places(NeighborRows& rows, bool keep) {
   if (static_cast<std::int64_t>(rows.near.index.extent(0)) < rows.near.stored) {
     const auto room = roomy(rows.near.stored);
     rows.near.index = uncleared<IndexField>("greenwater::row_index", room);
     if (keep) rows.near.weight = uncleared<FloatField>("greenwater::row_weight", room);
   }
-  if (!walls || static_cast<std::int64_t>(rows.images.index.extent(0)) >= rows.images.stored) return;
+  if (static_cast<std::int64_t>(rows.images.index.extent(0)) >= rows.images.stored) return;
   const auto room = roomy(rows.images.stored);
   rows.images.index = uncleared<IndexField>("greenwater::image_index", room);
   rows.images.mirror = uncleared<IndexField>("greenwater::image_mirror", room);
   rows.images.share = uncleared<ScalarField>("greenwater::image_share", room);
 }
+
+// Counts, makes room, and fills: on any device.
+template <int Dim>
+void build_in_two_passes(NeighborRows& rows, const RowSearch<Dim>& search, const IndexField& total, const ScalarField& n,
+                         int count, bool keep) {
+  count_rows_in(search, rows.near, rows.images, total, count);
+  rows.near.entries = sum_of(rows.near.number, count);
+  rows.near.stored = begin_chunks(total, rows.near.length, rows.near.first, count);
+  if (search.walls.count > 0) {
+    rows.images.entries = sum_of(rows.images.number, count);
+    rows.images.stored = begin_chunks(rows.images.number, rows.images.length, rows.images.first, count);
+  }
+  grow_places(rows, keep);
+  fill_rows_in(search, rows.near, rows.images, n, count);
+}
+
+#ifdef GREENWATER_HOST_ONLY
+// Fills at once, and once more where there was too little room.
+template <int Dim>
+void build_in_one_pass(NeighborRows& rows, const RowSearch<Dim>& search, Kokkos::View<std::int64_t[4], Device>& taken,
+                       const ScalarField& n, int count, bool keep) {
+  if (taken.data() == nullptr) taken = Kokkos::View<std::int64_t[4], Device>("greenwater::row_taken");
+  for (bool again = true; again;) {
+    Kokkos::deep_copy(taken, std::int64_t{0});
+    build_rows_on_host(search, {rows.near, rows.images, taken}, n, count);
+    rows.near.stored = taken(0);
+    rows.images.stored = taken(1);
+    rows.near.entries = taken(2);
+    rows.images.entries = taken(3);
+    again = rows.near.stored > static_cast<std::int64_t>(rows.near.index.extent(0)) ||
+            rows.images.stored > static_cast<std::int64_t>(rows.images.index.extent(0));
+    grow_places(rows, keep);
+  }
+}
+#endif
 
 }  // namespace
 
@@ -132,18 +166,14 @@ void NeighborRows::build(const Particles& particles, const CellGrid& grid, const
                          const RowOptions& options) {
   far_ = static_cast<real>(2 * options.radius);
   const int count = particles.count;
-  const bool images_too = walls.count > 0;
-  grow_heads(*this, total_, count, images_too);
+  grow_heads(*this, count, walls.count > 0);
   const auto build_in = [&](const auto& search) {
-    count_rows_in(search, near, images, total_, count);
-    near.entries = sum_of(near.number, count);
-    near.stored = begin_chunks(total_, near.length, near.first, count);
-    if (images_too) {
-      images.entries = sum_of(images.number, count);
-      images.stored = begin_chunks(images.number, images.length, images.first, count);
-    }
-    grow_places(*this, options.keep_weights, images_too);
-    fill_rows_in(search, near, images, particles.number_density, count);
+#ifdef GREENWATER_HOST_ONLY
+    if (!options.portable)
+      return build_in_one_pass(*this, search, taken_, particles.number_density, count, options.keep_weights);
+#endif
+    grow(total_, "greenwater::row_total", padded(count));
+    build_in_two_passes(*this, search, total_, particles.number_density, count, options.keep_weights);
   };
   const bool one_weight = options.density == options.laplacian;
   if (particles.dim == 2)

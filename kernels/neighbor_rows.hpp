@@ -74,6 +74,7 @@ struct RowOptions {
   Weight laplacian;          // whose values stand beside the entries
   coord radius = 0;          // of the search: the largest of all weights; at most the grid's cell [m]
   bool keep_weights = true;  // false: whoever needs a weight computes it; half of the memory
+  bool portable = false;     // as on a GPU, also on a host: for comparison
 };
 
 class NeighborRows {
@@ -92,6 +93,7 @@ class NeighborRows {
 
  private:
   IndexField total_;
+  Kokkos::View<std::int64_t[4], Device> taken_;
   real far_ = 0;
 };
 

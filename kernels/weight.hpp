@@ -16,7 +16,7 @@ struct Weight {
   /// Of one distance, or of a pack of them.
   template <class T>
   KOKKOS_INLINE_FUNCTION T operator()(const T& r) const {
-    return zero_unless(r < radius, radius / (r + shift * radius) - 1 / (1 + shift));
+    return zero_unless(r < radius, radius * inverse(r + shift * radius) - 1 / (1 + shift));
   }
 };
 
