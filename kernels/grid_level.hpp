@@ -30,10 +30,11 @@ struct Level {
   int* slot = nullptr;       // (pack)
   int* pack = nullptr;       // (slot)
   float* stencil = nullptr;  // (slot, entry, lane)  A, x fastest from -2 to 2
-  float* relax = nullptr;    // (slot, lane)         what the smoother multiplies a residual with; 0 where there is no fluid
-  float* b = nullptr;        // (slot, lane)         right side
-  float* x = nullptr;        // (position)           A x = b, and
-  float* y = nullptr;        // (position)           its residual or the next x
+  float* relax =
+      nullptr;         // (slot, lane)         what the smoother multiplies a residual with; 0 where there is no fluid
+  float* b = nullptr;  // (slot, lane)         right side
+  float* x = nullptr;  // (position)           A x = b, and
+  float* y = nullptr;  // (position)           its residual or the next x
 
   KOKKOS_INLINE_FUNCTION int position(int i, int j, int k) const { return origin + i + j * row + k * layer; }
 };

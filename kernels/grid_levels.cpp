@@ -125,9 +125,8 @@ void contract(const Level& fine, const Level& coarse) {
                     if constexpr (Dim == 2)
                       sum[y * across + x] += part;
                     else
-                      spread(c + dz + 4, part, [&](const int z, const FloatPack& piece) {
-                        sum[(z * across + y) * across + x] += piece;
-                      });
+                      spread(c + dz + 4, part,
+                             [&](const int z, const FloatPack& piece) { sum[(z * across + y) * across + x] += piece; });
                   });
               }
           }
@@ -165,7 +164,8 @@ void launch_residual(const Level& level) {
 template <int Dim>
 void launch_smooth(const Level& level) {
   Kokkos::parallel_for(
-      "greenwater::grid_smooth", Range(0, items(level)), KOKKOS_LAMBDA(const int number) { smooth<Dim>(level, number); });
+      "greenwater::grid_smooth", Range(0, items(level)),
+      KOKKOS_LAMBDA(const int number) { smooth<Dim>(level, number); });
 }
 
 template <int Dim>
@@ -250,7 +250,7 @@ Unknowns unknowns_of(const Level& level, int size) {
   for (int slot = 0; slot < level.active; ++slot) {
     const Item pack(level, slot * items_of_pack, size);
     for (int lane = 0; lane < node_lanes && pack.i + lane < level.nodes[0]; ++lane) {
-      const Unknowns::Node node = {pack.i + lane,    pack.j, pack.k, pack.value + lane, pack.position + lane,
+      const Unknowns::Node node = {pack.i + lane,      pack.j, pack.k, pack.value + lane, pack.position + lane,
                                    pack.stencil + lane};
       if (!(level.stencil[node.stencil + size / 2 * node_lanes] > 0)) continue;
       found.number[node_number(level, node.i, node.j, node.k)] = found.count;
@@ -298,7 +298,8 @@ void GridLevels::make_level(int l, const int (&nodes)[3]) {
   level.origin = node_lanes + reach * level.row + (flat ? 0 : reach * level.layer);
   level.active = 0;
   // Beyond the last line some more, as packs of the coarser level reach beyond the last node.
-  const std::int64_t positions = static_cast<std::int64_t>(nodes[2] + (flat ? 0 : 2 * reach)) * level.layer + 4 * node_lanes;
+  const std::int64_t positions =
+      static_cast<std::int64_t>(nodes[2] + (flat ? 0 : 2 * reach)) * level.layer + 4 * node_lanes;
   require<ResourceError>(positions < std::numeric_limits<int>::max() / 2,
                          "the domain has too many cells for the multigrid: make it smaller, or choose "
                          "mps.pressure.preconditioner = \"jacobi\"");

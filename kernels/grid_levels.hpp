@@ -9,8 +9,8 @@
 
 namespace greenwater {
 
-constexpr int most_levels = 16;    // enough for 2^15 nodes along an axis
-constexpr int coarsest_nodes = 64; // solved directly from here on
+constexpr int most_levels = 16;     // enough for 2^15 nodes along an axis
+constexpr int coarsest_nodes = 64;  // solved directly from here on
 
 /// Levels as kernels take them, by value.
 struct LevelStack {

@@ -5,7 +5,8 @@
 namespace greenwater {
 namespace {
 
-constexpr int wide = 4;  // nodes along each axis that a row of A P can reach: those of its cell and one more to each side
+constexpr int wide =
+    4;  // nodes along each axis that a row of A P can reach: those of its cell and one more to each side
 constexpr int window_nodes = wide * wide;  // in x and y; in 3-D four such layers, one after the other
 constexpr float far_away = 1e6f;           // [cells]
 
@@ -97,7 +98,8 @@ void find_packs(const Seats& seats, const Level& level, const IndexField& wanted
 }
 
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void hats_of(const Vec<Dim, FloatPack>& from_corner, FloatPack (&x)[wide], FloatPack (&y)[wide]) {
+KOKKOS_INLINE_FUNCTION void hats_of(const Vec<Dim, FloatPack>& from_corner, FloatPack (&x)[wide],
+                                    FloatPack (&y)[wide]) {
   for (int m = 0; m < wide; ++m) {
     x[m] = hat(from_corner[0] - static_cast<float>(m));
     y[m] = hat(from_corner[1] - static_cast<float>(m));
@@ -147,7 +149,8 @@ void row_windows(const Seats& seats, const FloatSystem& system, int layer, const
         const NodeIndex column = counted_lanes<NodeIndex>() * float_lanes;
         for (int l = 0; l < float_lanes; ++l)
           for (int m = 0; m < window_nodes; m += float_lanes)
-            store_lanes(&window((i + l) * window_nodes + m), gather_lanes<FloatPack>(block + l + m * float_lanes, column));
+            store_lanes(&window((i + l) * window_nodes + m),
+                        gather_lanes<FloatPack>(block + l + m * float_lanes, column));
       });
 }
 
@@ -181,8 +184,7 @@ void collect_stencils(const Seats& seats, const Level& level, int layer, const F
               sum.store(part);
               float* plane = stencil + (cz + layer) * (Dim == 3 ? across * across * node_lanes : 0);
               for (int m = 0; m < wide; ++m)
-                for (int n = 0; n < wide; ++n)
-                  plane[((cy + m) * across + cx + n) * node_lanes] += part[m * wide + n];
+                for (int n = 0; n < wide; ++n) plane[((cy + m) * across + cx + n) * node_lanes] += part[m * wide + n];
             }
       });
 }
@@ -287,7 +289,8 @@ void grow(FloatField& field, const std::string& label, std::int64_t size) {
 }
 
 template <int Dim>
-void make_first_level(const Seats& seats, const FloatSystem& system, const GridLevels& levels, const FloatField& window) {
+void make_first_level(const Seats& seats, const FloatSystem& system, const GridLevels& levels,
+                      const FloatField& window) {
   for (int layer = 0; layer < (Dim == 3 ? wide : 1); ++layer) {
     row_windows<Dim>(seats, system, layer, window);
     collect_stencils<Dim>(seats, levels.first(), layer, window);

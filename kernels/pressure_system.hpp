@@ -27,6 +27,9 @@ class PressureSystem {
   /// `fluid` must outlive every apply() until the next assemble().
   void assemble(const Fluid& fluid, real dt);
 
+  /// Makes the diagonal larger by this part of itself: as if the fluid were more compressible.
+  void raise_diagonal(real part);
+
   /// Ap = A p; 0 where the surface is.
   void apply(const ScalarField& p, const ScalarField& Ap) const;
 

@@ -1,6 +1,7 @@
 #include "kernels/refined_cg.hpp"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "kernels/blas.hpp"
@@ -8,9 +9,9 @@
 namespace greenwater {
 namespace {
 
-constexpr int most_rounds = 6;             // of the outer loop
-constexpr accum least_in_float = 1e-5;     // what a round in float can reduce the residual to
-constexpr accum margin = 0.95;             // a round aims a little lower than the loop around it
+constexpr accum least_in_float = 1e-5;  // what a round in float can reduce the residual to
+constexpr accum margin = 0.95;          // a round aims a little lower than the loop around it
+constexpr accum stall = 0.5;            // a round that leaves more than this of the residual has met its rounding
 
 struct Vectors {
   FloatField r, first, z, d, q, x;
@@ -121,9 +122,9 @@ Round solve_in_float(Multigrid& multigrid, accum target, int most, const Vectors
     if (rz <= 0) return {k, "the preconditioner is not positive on this residual"};
     const accum dq = advance_direction(matrix, k == 0 ? 0.0f : static_cast<float>(rz / rz_before), v);
     if (!std::isfinite(dq)) return {k, "not a number"};
-    if (dq <= 0)
-      return {k, "the matrix is not positive on this direction (a closed cluster without a free surface?)"};
+    if (dq <= 0) return {k, "the matrix is not positive on this direction (a closed cluster without a free surface?)"};
     const accum rr = advance_solution(matrix, static_cast<float>(rz / dq), v);
+    if (!std::isfinite(rr)) return {k, "not a number"};
     if (std::sqrt(rr) <= target) return {k + 1, {}};
     rz_before = rz;
   }
@@ -155,25 +156,28 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
   const Vectors v = {r_, first_, z_, d_, q_, x_};
   hold_surface(system.fixed(), p, count);
   const accum b_norm = std::sqrt(blas::dot(system.rhs(), system.rhs(), count));
+  if (!std::isfinite(b_norm)) return stopped(0, b_norm, "not a number");
   if (b_norm == 0) {
     clear(p, count);
     return {};
   }
   const accum enough = std::fmax(options_.tolerance * b_norm, static_cast<accum>(options_.absolute));
   int iterations = 0;
-  for (int round = 0;; ++round) {
+  accum before = std::numeric_limits<accum>::infinity();
+  for (;;) {
     system.apply(p, Ap_);
     const accum residual = residual_norm(system, Ap_);
     if (!std::isfinite(residual)) return stopped(iterations, residual / b_norm, "not a number");
     if (residual <= enough) return {iterations, static_cast<real>(residual / b_norm), true, "converged"};
-    if (iterations >= options_.max_iterations || round == most_rounds)
-      return stopped(iterations, residual / b_norm, "too many iterations");
+    if (iterations >= options_.max_iterations) return stopped(iterations, residual / b_norm, "too many iterations");
+    if (residual > stall * before) return stopped(iterations, residual / b_norm, "the residual no longer falls");
+    before = residual;
     begin_round(system, multigrid.system(), Ap_, residual, v);
     const accum target = std::fmax(margin * enough / residual, least_in_float);
     const Round done = solve_in_float(multigrid, target, options_.max_iterations - iterations, v);
     iterations += done.iterations;
-    add_correction(x_, residual / system.factor(), p, count);
     if (!done.cause.empty()) return stopped(iterations, residual / b_norm, done.cause);
+    add_correction(x_, residual / system.factor(), p, count);
   }
 }
 

@@ -19,7 +19,8 @@ class RefinedCg {
 
   CgOptions options_;
   ScalarField Ap_;
-  FloatField r_, first_, z_, d_, q_, x_;  // residual, z after the first sweep, preconditioned residual, direction, A d, sum
+  FloatField r_, first_, z_, d_, q_,
+      x_;  // residual, z after the first sweep, preconditioned residual, direction, A d, sum
 };
 
 }  // namespace greenwater

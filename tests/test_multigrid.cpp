@@ -63,5 +63,6 @@ TEST_CASE("the multigrid is symmetric and near the inverse", "[unit][multigrid]"
   UNSCOPED_INFO(active.size() << " active, eigenvalues of M A " << values.minCoeff() << " ... " << values.maxCoeff());
   CHECK(values.minCoeff() > 0.7);
   CHECK(values.maxCoeff() < 1.3);
-  std::printf("%zu active of %d, eigenvalues of M A %g ... %g\n", active.size(), fluid.particles.count, values.minCoeff(), values.maxCoeff());
+  std::printf("%zu active of %d, eigenvalues of M A %g ... %g\n", active.size(), fluid.particles.count,
+              values.minCoeff(), values.maxCoeff());
 }
