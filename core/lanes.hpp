@@ -11,7 +11,8 @@
 
 #include "core/fields.hpp"
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && \
+    !defined(GREENWATER_PLAIN_LANES)
 #define GREENWATER_VECTORS 1
 #include <immintrin.h>
 #endif
@@ -19,8 +20,9 @@
 namespace greenwater {
 
 /// Whether kernels run on the host, where one thread works on many particles.
-constexpr bool on_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace, Space::memory_space>::accessible &&
-                         std::is_same<Space::memory_space, Kokkos::HostSpace>::value;
+constexpr bool on_host =
+    Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace, Space::memory_space>::accessible &&
+    std::is_same<Space::memory_space, Kokkos::HostSpace>::value;
 
 /// Rows of neighbours that lie side by side in memory: a vector of floats on a host, a warp on a GPU.
 constexpr int row_lanes = on_host ? 16 : 32;
@@ -118,6 +120,20 @@ KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
     unsigned bits = 0;
     for (std::size_t l = 0; l < sizeof(Mask) / sizeof(yes[0]); ++l) bits |= (yes[l] ? 1u : 0u) << l;
     return bits;
+  }
+}
+
+/// The sum of all lanes, in accum.
+template <class V>
+KOKKOS_INLINE_FUNCTION accum sum_lanes(const V& v) {
+  if constexpr (is_scalar<V>) {
+    return v;
+  } else {
+    constexpr int width = static_cast<int>(sizeof(V) / sizeof(v[0]));
+    const auto wide = __builtin_convertvector(v, Lanes<accum, width>);
+    accum sum = 0;
+    for (int l = 0; l < width; ++l) sum += wide[l];
+    return sum;
   }
 }
 
