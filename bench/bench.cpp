@@ -1,0 +1,43 @@
+#include "bench/bench.hpp"
+
+#include "bench/measure.hpp"
+#include "bench/states.hpp"
+#include "core/kokkos.hpp"
+
+namespace greenwater {
+namespace {
+
+using What = BenchOptions::What;
+
+// Wrong names are complained about before any work, and sizes that are too large for the machine as well.
+void check(const BenchOptions& options) {
+  for (const std::string& state : options.states) bench::time_of_state(state);
+  for (const std::string& plate : options.plates) bench::scene_text(bench::size_near(options.dimension, 1000), plate);
+}
+
+void make_states(const BenchOptions& options) {
+  const auto folder = bench::state_folder(options.cache);
+  const auto sizes = options.sizes.empty() ? bench::usual_sizes(options.dimension, false) : options.sizes;
+  const auto names = options.states.empty() ? std::vector<std::string>{"rest", "collapse", "splash"} : options.states;
+  for (const int particles : sizes) bench::make_states(folder, bench::size_near(options.dimension, particles), names);
+}
+
+}  // namespace
+
+int run_bench(const BenchOptions& options) {
+  check(options);
+  if (options.what == What::scaling) {
+    bench::write_results(options, bench::bench_scaling(options));
+    return 0;
+  }
+  const Runtime runtime(options.threads.empty() ? 0 : options.threads.front());
+  switch (options.what) {
+    case What::states: make_states(options); break;
+    case What::step: bench::write_results(options, bench::bench_step(options)); break;
+    case What::pressure: bench::write_results(options, bench::bench_pressure(options)); break;
+    case What::scaling: break;
+  }
+  return 0;
+}
+
+}  // namespace greenwater
