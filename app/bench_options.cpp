@@ -10,7 +10,7 @@ using What = BenchOptions::What;
 template <class T>
 CLI::Option* add_list(CLI::App& verb, const std::string& name, std::vector<T>& list, const std::string& meaning,
                       const std::string& type) {
-  return verb.add_option(name, list, meaning)->delimiter(',')->type_name(type)->expected(1)->allow_extra_args(false);
+  return verb.add_option(name, list, meaning)->delimiter(',')->type_name(type)->allow_extra_args(false);
 }
 
 CLI::App* add_verb(CLI::App& bench, BenchOptions& options, What what, const std::string& name,

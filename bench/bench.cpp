@@ -1,7 +1,7 @@
 #include "bench/bench.hpp"
 
 #include "bench/measure.hpp"
-#include "bench/states.hpp"
+#include "bench/water.hpp"
 #include "core/kokkos.hpp"
 
 namespace greenwater {
@@ -9,10 +9,12 @@ namespace {
 
 using What = BenchOptions::What;
 
-// Wrong names are complained about before any work, and sizes that are too large for the machine as well.
+// Wrong names are complained about before any work.
 void check(const BenchOptions& options) {
   for (const std::string& state : options.states) bench::time_of_state(state);
   for (const std::string& plate : options.plates) bench::scene_text(bench::size_near(options.dimension, 1000), plate);
+  bench::chosen_preconditioners(options.preconditioners);
+  bench::chosen_solvers(options.solvers);
 }
 
 void make_states(const BenchOptions& options) {

@@ -69,7 +69,6 @@ Json triad_list(const Triads& triads) {
 void write_results(const BenchOptions& options, const Json& all) {
   if (options.json.empty()) return;
   write_atomically(options.json, all.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
-  fmt::print("written to {}\n", options.json);
 }
 
 std::string figure(double value) {

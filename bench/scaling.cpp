@@ -72,26 +72,18 @@ Json measured(const BenchOptions& options, int particles, const std::string& sta
   return Json::parse(stream);
 }
 
-double step_ms(const Json& rows, int particles, int threads) {
-  for (const Json& row : rows)
-    if (row["region"] == "step" && row["particles"] == particles && row["threads"] == threads) return row["ms"];
-  return 0;
-}
-
 void print_table(const Json& rows) {
-  fmt::print("\n  {:>10}{:>9}{:>12}{:>9}{:>14}{:>8}{:>10}\n", "particles", "threads", "ms a step", "ns/part.",
-             "bytes/part.", "its", "speed-up");
-  int first = 0;  // threads of the first row of a size
-  int size = 0;
+  fmt::print("\n  {:<10}{:>10}{:>9}{:>12}{:>10}{:>13}{:>8}{:>8}{:>8}{:>10}\n", "state", "particles", "threads",
+             "ms a step", "ns/part.", "bytes/part.", "GB/s", "triad", "its", "speed-up");
+  const Json* first = nullptr;  // of a size: the one that others are compared with
   for (const Json& row : rows) {
     if (row["region"] != "step") continue;
-    const int particles = row["particles"], threads = row["threads"];
-    if (particles != size) first = threads;
-    size = particles;
-    const double ms = row["ms"];
-    fmt::print("  {:>10}{:>9}{:>12}{:>9}{:>14}{:>8}{:>10.2f}\n", particles, threads, figure(ms),
-               figure(row["ns_per_particle"]), figure(row["bytes_per_particle"]), figure(row["iterations"]),
-               step_ms(rows, particles, first) / ms);
+    if (!first || row["particles"] != (*first)["particles"] || row["state"] != (*first)["state"]) first = &row;
+    const auto cell = [&](const char* key) { return figure(row[key].get<double>()); };
+    fmt::print("  {:<10}{:>10}{:>9}{:>12}{:>10}{:>13}{:>8}{:>8}{:>8}{:>10.2f}\n", row["state"].get<std::string>(),
+               row["particles"].get<int>(), row["threads"].get<int>(), cell("ms"), cell("ns_per_particle"),
+               cell("bytes_per_particle"), cell("gb_per_s"), cell("triad_gb_per_s"), cell("iterations"),
+               (*first)["ms"].get<double>() / row["ms"].get<double>());
   }
 }
 
