@@ -22,10 +22,10 @@ struct BenchOptions {
   std::vector<std::string> preconditioners;  ///< empty: all that are meant to be used
   std::vector<std::string> solvers;          ///< names of bench/solvers.cpp
   std::string source = "density";            ///< of the pressure equation
-  std::vector<double> tolerances;            ///< relative residuals; `step` and `scaling` take the first
+  std::vector<double> tolerances;            ///< relative residuals; several for `pressure` only
   int rounds = 5;                            ///< how often everything is measured, in turn
   int steps = 10;                            ///< of a round
-  std::vector<int> threads;                  ///< `scaling`: each of them in turn; others: the first; empty: not said
+  std::vector<int> threads;                  ///< several for `scaling` only; empty: not said
   std::string json;                          ///< file for the results; empty: none
   std::string cache;                         ///< folder of the states; empty: the usual one
   std::vector<std::string> sets;             ///< KEY=VALUE for the case that is measured

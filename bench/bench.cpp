@@ -15,6 +15,10 @@ void check(const BenchOptions& options) {
   for (const std::string& plate : options.plates) bench::scene_text(bench::size_near(options.dimension, 1000), plate);
   bench::chosen_preconditioners(options.preconditioners);
   bench::chosen_solvers(options.solvers);
+  require(options.what == What::scaling || options.threads.size() < 2,
+          "bench: error: --threads: only bench scaling takes several numbers of threads");
+  require(options.what == What::pressure || options.tolerances.size() < 2,
+          "bench: error: --tolerance: only bench pressure takes several");
 }
 
 void make_states(const BenchOptions& options) {

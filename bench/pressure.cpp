@@ -49,9 +49,9 @@ struct Variant {
   double residual = 0;  // |b - A p| / |b|, computed anew at the end
 };
 
-class Bench {
+class Comparison {
  public:
-  Bench(const BenchOptions& options, const Scene& scene, const Fluid& fluid)
+  Comparison(const BenchOptions& options, const Scene& scene, const Fluid& fluid)
       : fluid_(fluid),
         p_(fluid.particles.pressure),
         previous_(uncleared<ScalarField>("greenwater::bench_previous", p_.extent(0))),
@@ -236,14 +236,14 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
   base["plate"] = plate;
   base["threads"] = Runtime::concurrency();
   print_head(base);
-  Bench bench(options, scene, fluid);
-  bench.run(options.rounds);
-  for (const Variant& variant : bench.variants()) {
-    to.rows.push_back(variant_row(base, bench.variants(), variant));
+  Comparison comparison(options, scene, fluid);
+  comparison.run(options.rounds);
+  for (const Variant& variant : comparison.variants()) {
+    to.rows.push_back(variant_row(base, comparison.variants(), variant));
     print_row(to.rows.back());
   }
   for (const bool keep : {true, false}) {
-    to.products.push_back(product_row(base, fluid, keep, bench.product(keep, options.rounds), to.triads));
+    to.products.push_back(product_row(base, fluid, keep, comparison.product(keep, options.rounds), to.triads));
     print_product(to.products.back());
   }
   std::fflush(stdout);

@@ -15,7 +15,7 @@ namespace greenwater::bench {
 namespace {
 
 /// What the round that is looked at tells of one step, in the mean.
-struct Sight {
+struct Overview {
   Counts counts;
   double launches = 0, memory = 0;  // memory [bytes] as views hold it
   std::map<std::string, double> launches_by_label;
@@ -41,23 +41,23 @@ void add_rows(const Fluid& fluid, double part, Counts& counts) {
   counts.image_entries += part * static_cast<double>(fluid.rows.images.entries);
 }
 
-Sight look(Water& water, Listener& listener, int steps) {
-  Sight sight;
+Overview look(Water& water, Listener& listener, int steps) {
+  Overview overview;
   const double part = 1.0 / steps;
   listener.forget_launches();
   for (int k = 0; k < steps; ++k) {
     const StepReport report = water.step();
-    sight.iterations.push_back(report.solve.iterations);
-    sight.counts.iterations += part * report.solve.iterations;
-    add_rows(water.fluid(), part, sight.counts);
+    overview.iterations.push_back(report.solve.iterations);
+    overview.counts.iterations += part * report.solve.iterations;
+    add_rows(water.fluid(), part, overview.counts);
   }
-  sight.launches = part * static_cast<double>(listener.launches());
-  sight.memory = static_cast<double>(listener.bytes());
+  overview.launches = part * static_cast<double>(listener.launches());
+  overview.memory = static_cast<double>(listener.bytes());
   for (const auto& [label, number] : listener.launches_by_label())
-    sight.launches_by_label[label] = part * static_cast<double>(number);
-  sight.counts.collision_looks = part * static_cast<double>(listener.launches("greenwater::count_collisions"));
-  sight.counts.collision_moves = part * static_cast<double>(listener.launches("greenwater::collision"));
-  return sight;
+    overview.launches_by_label[label] = part * static_cast<double>(number);
+  overview.counts.collision_looks = part * static_cast<double>(listener.launches("greenwater::count_collisions"));
+  overview.counts.collision_moves = part * static_cast<double>(listener.launches("greenwater::collision"));
+  return overview;
 }
 
 void time_round(Water& water, int steps, Samples& samples) {
@@ -111,14 +111,15 @@ Traffic traffic_of(const std::string& region, const Counts& counts) {
   return sum;
 }
 
-Json region_row(const Json& base, const std::string& region, const Spread& ms, const Sight& sight, Triads& triads) {
+Json region_row(const Json& base, const std::string& region, const Spread& ms, const Overview& overview,
+                Triads& triads) {
   Json row = base;
   row["region"] = region;
   row["inside"] = model_of(region).inside;
   add_spread(row, ms);
-  const double particles = sight.counts.particles;
+  const double particles = overview.counts.particles;
   row["ns_per_particle"] = 1e6 * ms.median / particles;
-  const Traffic traffic = traffic_of(region, sight.counts);
+  const Traffic traffic = traffic_of(region, overview.counts);
   if (traffic.moved <= 0) return row;
   const double rate = 1e-6 * traffic.moved / ms.median, yardstick = triads.at(traffic.touched).median;
   row["bytes"] = traffic.moved;
@@ -130,8 +131,8 @@ Json region_row(const Json& base, const std::string& region, const Spread& ms, c
   return row;
 }
 
-void add_sight(Json& row, const Scene& scene, const Sight& sight) {
-  const Spread iterations = spread_of(sight.iterations);
+void add_overview(Json& row, const Scene& scene, const Overview& overview) {
+  const Spread iterations = spread_of(overview.iterations);
   row["tolerance"] = scene.mps.pressure.tolerance;
   row["preconditioner"] = scene.mps.pressure.preconditioner;
   row["weights"] = scene.mps.pressure.weights;
@@ -139,12 +140,12 @@ void add_sight(Json& row, const Scene& scene, const Sight& sight) {
   row["iterations"] = iterations.median;
   row["iterations_min"] = iterations.low;
   row["iterations_max"] = iterations.high;
-  row["launches"] = sight.launches;
-  row["memory"] = sight.memory;
-  row["memory_per_particle"] = sight.memory / sight.counts.particles;
-  row["entries_per_particle"] = sight.counts.entries / sight.counts.particles;
-  row["image_entries_per_particle"] = sight.counts.image_entries / sight.counts.particles;
-  row["launches_by_label"] = sight.launches_by_label;
+  row["launches"] = overview.launches;
+  row["memory"] = overview.memory;
+  row["memory_per_particle"] = overview.memory / overview.counts.particles;
+  row["entries_per_particle"] = overview.counts.entries / overview.counts.particles;
+  row["image_entries_per_particle"] = overview.counts.image_entries / overview.counts.particles;
+  row["launches_by_label"] = overview.launches_by_label;
 }
 
 std::string cell(const Json& row, const char* key, double factor = 1) {
@@ -171,12 +172,12 @@ void print_head(const Json& step) {
 void measure(const BenchOptions& options, const Size& size, const std::string& name, Triads& triads, Json& rows) {
   const State state = state_at(state_folder(options.cache), size, name);
   const Scene scene = bench_scene(size, sets_of(options));
-  Sight sight;
+  Overview overview;
   Samples samples;
   {
     auto listener = std::make_unique<Listener>();
     Water water(scene, state);
-    sight = look(water, *listener, options.steps);
+    overview = look(water, *listener, options.steps);
     listener.reset();  // who is timed is not listened to
     for (int round = 0; round < options.rounds; ++round) {
       water.put(state);
@@ -187,9 +188,9 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
   Json base = row_of(size, state.particles(), name);
   base["threads"] = Runtime::concurrency();
   for (const std::string& region : order_of(samples)) {
-    Json row = region_row(base, region, spread_of(samples.at(region)), sight, triads);
+    Json row = region_row(base, region, spread_of(samples.at(region)), overview, triads);
     if (region == "step") {
-      add_sight(row, scene, sight);
+      add_overview(row, scene, overview);
       print_head(row);
     }
     print_row(row);

@@ -347,3 +347,24 @@ TEST_CASE("two results are compared row by row", "[unit][bench]") {
   CHECK(answer_of(script + b + " " + a + " --limit 1.15").code == 0);
   CHECK(contains(answer_of(script + b + " " + a).out, "faster"));
 }
+
+TEST_CASE("results become tables on a page", "[unit][bench]") {
+  const TemporaryFolder folder;
+  Json step = timed("step", 10, 0.1, 5);
+  for (const char* key : {"ns_per_particle", "bytes_per_particle", "gb_per_s", "triad_gb_per_s", "share", "launches",
+                          "memory_per_particle"})
+    step[key] = 0.5;
+  write_text(folder / "a.json", results_text("g", {step}));
+  write_text(folder / "page.md",
+             "a\n<!-- bench: steps -->\nold\n<!-- end -->\n<!-- bench: times -->\nkept\n<!-- end -->\nz\n");
+  const std::string page = (folder / "page.md").string();
+  const std::string command = std::string("python3 '") + GREENWATER_SOURCE_DIR + "/scripts/bench-tables' " + page +
+                              " " + (folder / "a.json").string();
+  CHECK(answer_of(command).code == 0);
+  const std::string once = text_in(page);
+  CHECK(contains(once, "| 2-D | 10 | rest | 1 | 10 | 9.9 to 10.1 |"));
+  CHECK_FALSE(contains(once, "old"));
+  CHECK(contains(once, "kept"));
+  CHECK(answer_of(command).code == 0);
+  CHECK(text_in(page) == once);
+}
