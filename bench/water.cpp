@@ -10,14 +10,14 @@ namespace {
 
 template <class Field, class Value>
 void copy_scalar(const std::vector<Value>& from, const Field& to) {
-  const auto host = Kokkos::create_mirror_view(to);
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), to);  // what is longer, stays
   for (std::size_t i = 0; i < from.size(); ++i) host(i) = static_cast<typename Field::value_type>(from[i]);
   Kokkos::deep_copy(to, host);
 }
 
 template <class Field>
 void copy_vector(const std::vector<double>& from, const Field& to, int dim) {
-  const auto host = Kokkos::create_mirror_view(to);
+  const auto host = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), to);  // what is longer, stays
   for (std::size_t k = 0; k < from.size(); ++k)
     host(k / dim, k % dim) = static_cast<typename Field::value_type>(from[k]);
   Kokkos::deep_copy(to, host);
