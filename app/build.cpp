@@ -135,7 +135,6 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
   fluid.faces = walls;
   make_mirror_walls(fluid.walls, walls, fluid.grid.shape(), fluid.spacing);
   settle_rows(fluid);
-  number_density(fluid);
   mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
   return fluid;
 }

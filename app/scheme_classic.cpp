@@ -35,11 +35,10 @@ class Classic : public Scheme {
     report.stopped = predict(fluid, dt);
     effects.run(Stage::after_predict, fluid, dt);
 
-    // 2  who is near whom now
+    // 2  who is near whom now, and n
     report.departed = settle_rows(fluid);
 
     // 3  implicit part: the pressure that brings n back to n^0
-    number_density(fluid);
     mark_surface(fluid, options_.surface_ratio);
     report.solve = solve_pressure(fluid, dt);
     clip_pressure(fluid);

@@ -9,9 +9,11 @@
 
 namespace greenwater {
 
-using ScalarField = Kokkos::View<real*, Device>;   // (i)
-using VectorField = Kokkos::View<real**, Device>;  // (i, axis), axis < dimension
-using CoordField = Kokkos::View<coord**, Device>;  // (i, axis)
+using ScalarField = Kokkos::View<real*, Device>;                         // (i)
+using VectorField = Kokkos::View<real**, Kokkos::LayoutLeft, Device>;    // (i, axis), axis < dimension; axis by axis
+using CoordField = Kokkos::View<coord**, Kokkos::LayoutLeft, Device>;    // (i, axis)
+using FloatField = Kokkos::View<float*, Device>;                         // what needs seven digits and no more
+using AccumField = Kokkos::View<accum*, Device>;
 using IndexField = Kokkos::View<int*, Device>;
 using OffsetField = Kokkos::View<std::int64_t*, Device>;  // where a row begins: more entries than an int counts
 using FlagField = Kokkos::View<std::uint8_t*, Device>;
@@ -36,7 +38,7 @@ struct Vec {
 
 template <int Dim, class T>
 KOKKOS_INLINE_FUNCTION T dot(const Vec<Dim, T>& a, const Vec<Dim, T>& b) {
-  T sum = 0;
+  T sum{};
   for (int d = 0; d < Dim; ++d) sum += a[d] * b[d];
   return sum;
 }

@@ -13,6 +13,11 @@
 
 namespace greenwater {
 
+// A build without any device compiler, which may have code for the host alone.
+#if !defined(KOKKOS_ENABLE_CUDA) && !defined(KOKKOS_ENABLE_HIP) && !defined(KOKKOS_ENABLE_SYCL)
+#define GREENWATER_HOST_ONLY 1
+#endif
+
 #if KOKKOS_VERSION >= 30700  // the mathematical functions left Kokkos::Experimental
 namespace math = Kokkos;
 #else

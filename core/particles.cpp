@@ -47,13 +47,14 @@ Particles make_particles(int dim, int count) {
   Particles p;
   p.dim = dim;
   p.count = count;
-  p.id = IndexField("greenwater::id", count);
-  p.position = CoordField("greenwater::position", count, dim);
-  p.velocity = VectorField("greenwater::velocity", count, dim);
-  p.acceleration = VectorField("greenwater::acceleration", count, dim);
-  p.pressure = ScalarField("greenwater::pressure", count);
-  p.number_density = ScalarField("greenwater::number_density", count);
-  p.surface = FlagField("greenwater::surface", count);
+  const int room = padded(count);
+  p.id = IndexField("greenwater::id", room);
+  p.position = CoordField("greenwater::position", room, dim);
+  p.velocity = VectorField("greenwater::velocity", room, dim);
+  p.acceleration = VectorField("greenwater::acceleration", room, dim);
+  p.pressure = ScalarField("greenwater::pressure", room);
+  p.number_density = ScalarField("greenwater::number_density", room);
+  p.surface = FlagField("greenwater::surface", room);
   number_from_zero(p.id);
   return p;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The fluid: one entry per particle in every field. Fields may be longer than `count`; only the first `count` entries
-// mean anything.
+// The fluid: one entry per particle in every field. Fields are longer than `count`, at least so much that whole packs of
+// particles can be read and written; only the first `count` entries mean anything.
 
 #include <string>
 #include <vector>
@@ -28,6 +28,9 @@ struct Particles {
   FlagField surface;           // 1 = free surface, p = 0
   std::vector<ExtraField> extras;
 };
+
+/// A number of particles made up to whole packs and rows, and a pack more, so that one may begin at any particle.
+constexpr int padded(int count) { return (count + 63) / 32 * 32; }
 
 /// Room for `count` particles, all fields zero, ids 0, 1, 2 ...
 Particles make_particles(int dim, int count);

@@ -1,40 +1,19 @@
 #include "kernels/density.hpp"
 
-#include "core/region.hpp"
-
 namespace greenwater {
 namespace {
 
 template <int Dim>
-void number_density_in(const Fluid& fluid, const ScalarField& n) {
-  const auto near = around<Dim>(fluid);
-  const auto w = fluid.density.weight;
-  Kokkos::parallel_for(
-      "greenwater::number_density", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        real sum = 0;
-        near.for_each(
-            i, [&](int, const Vec<Dim>& r, const Image<Dim>& image) { sum += image.share * w(sqrt(dot(r, r))); });
-        n(i) = sum;
-      });
-}
-
-template <int Dim>
 void mark_surface_in(const Fluid& fluid, real ratio, const FlagField& surface) {
   const auto n = Read<ScalarField>(fluid.particles.number_density);
-  const auto first = Read<OffsetField>(fluid.rows.near.first);
+  const auto neighbours = Read<IndexField>(fluid.rows.near.number);
   const real limit = ratio * fluid.density.reference.n0;
   Kokkos::parallel_for(
       "greenwater::mark_surface", Range(0, fluid.particles.count),
-      KOKKOS_LAMBDA(const int i) { surface(i) = n(i) < limit || first(i + 1) - first(i) < Dim + 1; });
+      KOKKOS_LAMBDA(const int i) { surface(i) = n(i) < limit || neighbours(i) < Dim + 1; });
 }
 
 }  // namespace
-
-void number_density(Fluid& fluid) {
-  Region region("density");
-  const ScalarField n = fluid.particles.number_density;
-  fluid.particles.dim == 2 ? number_density_in<2>(fluid, n) : number_density_in<3>(fluid, n);
-}
 
 void mark_surface(Fluid& fluid, real ratio) {
   const FlagField surface = fluid.particles.surface;

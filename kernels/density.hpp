@@ -1,12 +1,10 @@
 #pragma once
-// Particle number density and what follows from it.
+// What follows from the particle number density n_i = sum over neighbours and images of w(r_ij) (paper, Eq. 3 for w). n
+// itself is summed where the rows are built.
 
 #include "kernels/fluid.hpp"
 
 namespace greenwater {
-
-/// n_i = sum over neighbours and images of w(r_ij) (paper, Eq. 3 for w) into particles.number_density.
-void number_density(Fluid& fluid);
 
 /// Marks the free surface, n < ratio n^0, into particles.surface. A particle with so few neighbours that no pressure can
 /// be formed (fewer than dim + 1) is free too: it flies.

@@ -41,7 +41,7 @@ Around<Dim> around(const Fluid& fluid) {
 inline RowOptions row_options(const Fluid& fluid) {
   const real widest =
       larger(larger(fluid.density.weight.radius, fluid.gradient.weight.radius), fluid.laplacian.weight.radius);
-  return {fluid.laplacian.weight, widest, fluid.keep_weights};
+  return {fluid.density.weight, fluid.laplacian.weight, widest, fluid.keep_weights};
 }
 
 /// Device view of all that drives a particle beside pressure: g, and a body force where a scene names one.
@@ -51,9 +51,11 @@ struct Drive {
   Read<VectorField> extra;
   bool has_extra;
 
-  KOKKOS_INLINE_FUNCTION Vec<Dim> at(int i) const {
-    Vec<Dim> g;
-    for (int d = 0; d < Dim; ++d) g[d] = gravity[d] + (has_extra ? extra(i, d) : real(0));
+  /// Of particles j.
+  KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> at(const IndexPack& j) const {
+    Vec<Dim, Pack> g;
+    for (int d = 0; d < Dim; ++d) g[d] = all_lanes<Pack>(gravity[d]);
+    if (has_extra) g = along(g, all_lanes<Pack>(real(1)), gather_pack<Dim>(extra, j));
     return g;
   }
 };

@@ -99,6 +99,7 @@ void make_mirror_walls(MirrorWalls& made, const WallFaces& faces, const GridShap
   made.panels = static_cast<int>(walls.panels.size());
   upload(made.panel, "greenwater::mirror_panels", walls.panels);
   upload(made.piece, "greenwater::mirror_pieces", walls.pieces);
+  upload(made.rim, "greenwater::mirror_rims", walls.rims);
   upload(made.joint, "greenwater::mirror_joints", walls.joints);
   upload(made.joint_of_panel, "greenwater::mirror_joint_of_panel", walls.joint_of_panel);
   upload(made.mirror, "greenwater::mirrors", walls.mirrors);

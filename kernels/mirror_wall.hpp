@@ -39,12 +39,18 @@ struct Piece {
   coord inward[3][3];  // unit, in the panel: a point q of the panel is in it when (q - corner[e]) . inward[e] >= 0
 };
 
+/// A stretch of a panel's rim (2-D: an end, a = b).
+struct Rim {
+  coord a[3], b[3];  // [m]
+};
+
 /// A plane stretch of wall: all pieces that lie in one plane, touch and move alike. In it one particle has one image.
 struct Panel {
   coord normal[3];              // unit
   coord point[3];               // its first corner [m]
   coord middle[3], extent;      // of its bounds, and no corner is farther from there [m]
   int first_piece, last_piece;  // its pieces, the last one excluded
+  int first_rim, last_rim;      // its rim; a panel of very many pieces has none noted, and first_rim = -1
   int first_joint, last_joint;  // its corners, as places in MirrorWalls::joint_of_panel
   int body;                     // named geometry
   bool no_slip, moves;
@@ -95,6 +101,7 @@ struct MirrorWalls {
   int panels = 0;
   Kokkos::View<Panel*, Device> panel;
   Kokkos::View<Piece*, Device> piece;
+  Kokkos::View<Rim*, Device> rim;
   Kokkos::View<Joint*, Device> joint;
   IndexField joint_of_panel;
   Kokkos::View<Mirror*, Device> mirror;  // mirror k < panels is that of panel k alone; then corners

@@ -177,23 +177,23 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
   const real factor = -Dim / (fluid.gradient.reference.n0 * rho);
   const real touching = static_cast<real>(1e-12 * fluid.spacing * fluid.spacing);
   Kokkos::parallel_for(
-      "greenwater::pressure_gradient", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        real p_min = p(i);
-        Vec<Dim> sum_pf{}, sum_f{};  // sum (p_j - p_min) f = sum p_j f - p_min sum f: one pass
-        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-          const real r2 = dot(r, r);
-          const real weight = image.share * w(sqrt(r2));
-          if (!(weight > 0) || r2 < touching) return;
-          real pj = p(j);
-          if (image) pj += rho * image.pressure_offset(drive.at(j), load<Dim>(x, j));
-          p_min = smaller(p_min, pj);
-          for (int d = 0; d < Dim; ++d) {
-            const real f = r[d] * weight / r2;
-            sum_pf[d] += pj * f;
-            sum_f[d] += f;
-          }
+      "greenwater::pressure_gradient", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        Pack p_min = load_pack(p, i);
+        Vec<Dim, Pack> sum_pf{}, sum_f{};  // sum (p_j - p_min) f = sum p_j f - p_min sum f: one pass
+        near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const Pack r2 = dot(r, r);
+          const Pack weight = zero_unless(r2 >= touching, image.share * w(sqrt(r2)));
+          Pack pj = gather_pack(p, j);
+          if constexpr (std::decay_t<decltype(image)>::mirrored)
+            pj += rho * image.pressure_offset(drive.at(j), gather_pack<Dim>(x, j));
+          p_min = select(weight > 0, smaller(p_min, pj), p_min);
+          const auto f = along(Vec<Dim, Pack>{}, weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
+          sum_pf = along(sum_pf, pj, f);
+          sum_f = along(sum_f, all_lanes<Pack>(real(1)), f);
         });
-        for (int d = 0; d < Dim; ++d) a(i, d) = factor * (sum_pf[d] - p_min * sum_f[d]);
+        const auto grad = along(sum_pf, -p_min, sum_f);
+        store_pack(a, i, along(Vec<Dim, Pack>{}, all_lanes<Pack>(factor), grad));
       });
 }
 

@@ -12,15 +12,16 @@ void find_way_in(const Fluid& fluid, const VectorField& way) {
   const real l0 = static_cast<real>(fluid.spacing), factor = -rate * l0 / fluid.density.reference.n0, cap = most * l0;
   const real touching = static_cast<real>(1e-6) * l0;
   Kokkos::parallel_for(
-      "greenwater::find_way", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        Vec<Dim> sum{};
-        near.for_each(i, [&](int, const Vec<Dim>& r, const Image<Dim>& image) {
-          const real distance = sqrt(dot(r, r));
-          if (distance > touching) sum = along(sum, image.share * w(distance) / distance, r);
+      "greenwater::find_way", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        Vec<Dim, Pack> sum{};
+        near.for_each(i, [&](const IndexPack&, const Vec<Dim, Pack>& r, const auto& image) {
+          const Pack distance = sqrt(dot(r, r));
+          sum = along(sum, zero_unless(distance > touching, image.share * w(distance) / distance), r);
         });
-        const real length = fabs(factor) * sqrt(dot(sum, sum));
-        const real scale = length > cap ? factor * cap / length : factor;
-        store(way, i, along(Vec<Dim>{}, scale, sum));
+        const Pack length = fabs(factor) * sqrt(dot(sum, sum));
+        const Pack scale = select(length > cap, factor * cap / length, all_lanes<Pack>(factor));
+        store_pack(way, i, along(Vec<Dim, Pack>{}, scale, sum));
       });
 }
 

@@ -8,22 +8,14 @@ real laplacian_factor(const Fluid& fluid) {
   return 2 * fluid.particles.dim / (lattice.lambda * lattice.n0);  // K
 }
 
-// An image of i itself has the pressure of i and drops out.
-template <int Dim>
-void diagonal_in(const Fluid& fluid, const PressureOptions& options, real dt, const ScalarField& diagonal) {
-  const auto near = around<Dim>(fluid);
-  const auto w = fluid.laplacian.weight;
+void diagonal_of(const Fluid& fluid, const PressureOptions& options, real dt, const ScalarField& diagonal) {
   const auto fixed = Read<FlagField>(fluid.particles.surface);
+  const auto sum = fluid.rows.near.weight_sum;
   const real C_K = options.diagonal_factor * laplacian_factor(fluid);
   const real shift = fluid.rho * options.compressibility / (dt * dt);
   Kokkos::parallel_for(
-      "greenwater::pressure_diagonal", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        real sum = 0;
-        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-          if (j != i) sum += image.share * w(sqrt(dot(r, r)));
-        });
-        diagonal(i) = fixed(i) ? real(1) : C_K * sum + shift;
-      });
+      "greenwater::pressure_diagonal", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i) { diagonal(i) = fixed(i) ? real(1) : static_cast<real>(C_K * sum(i) + shift); });
 }
 
 void density_source(const Fluid& fluid, real gamma, real dt, const ScalarField& b) {
@@ -45,40 +37,38 @@ void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
   const real factor = -fluid.rho / dt * Dim / fluid.gradient.reference.n0;
   const real touching = static_cast<real>(1e-12 * fluid.spacing * fluid.spacing);
   Kokkos::parallel_for(
-      "greenwater::divergence_source", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        const auto ui = load<Dim>(u, i);
-        real div = 0;
-        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-          const auto uj = image ? image.velocity(load<Dim>(u, j)) : load<Dim>(u, j);
-          const real r2 = dot(r, r);
-          if (r2 > touching) div += dot(difference(uj, ui), r) * image.share * w(sqrt(r2)) / r2;
+      "greenwater::divergence_source", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const auto ui = load_pack<Dim>(u, i);
+        Pack div{};
+        near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const auto uj = image.velocity(gather_pack<Dim>(u, j));
+          const Pack r2 = dot(r, r);
+          const Pack weight = image.share * w(sqrt(r2)) * inverse(larger(r2, all_lanes<Pack>(touching)));
+          div += zero_unless(r2 > touching, dot(difference(uj, ui), r) * weight);
         });
-        b(i) = fixed(i) ? real(0) : factor * div;
+        for (int l = 0; l < pack_lanes; ++l) b(i + l) = fixed(i + l) ? real(0) : factor * lane(div, l);
       });
 }
 
-// One row of A p from the kept weights; p is 0 where the surface is, so no entry needs to be left out.
+// A p from sums over rows; p is 0 where the surface is, so that no entry needs to be left out.
+KOKKOS_INLINE_FUNCTION void store_product(const Read<FlagField>& fixed, real K, const ScalarField& diagonal,
+                                          const ScalarField& p, const Pack& sum, int i, const ScalarField& Ap) {
+  const Pack product = load_pack(diagonal, i) * load_pack(p, i) - K * sum;
+  for (int l = 0; l < pack_lanes; ++l) Ap(i + l) = fixed(i + l) ? real(0) : lane(product, l);
+}
+
 void apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p, const ScalarField& Ap) {
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const auto near = fluid.rows.near;
-  const auto images = fluid.rows.images;
-  const bool walls = images.first.extent(0) > 0;
   Kokkos::parallel_for(
-      "greenwater::apply_pressure", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        real sum = 0;
-        if (!fixed(i)) {
-          for (auto k = near.first(i); k < near.first(i + 1); ++k) sum += near.weight(k) * p(near.index(k));
-          if (walls)
-            for (auto k = images.first(i); k < images.first(i + 1); ++k) {
-              const int j = images.index(k);
-              if (j != i) sum += images.weight(k) * p(j);
-            }
-          sum = diagonal(i) * p(i) - K * sum;
-        }
-        Ap(i) = sum;
+      "greenwater::apply_pressure", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        store_product(fixed, K, diagonal, p, row_product<Pack>(near, p.data(), i), i, Ap);
       });
 }
 
+// The weights are rounded as those that are kept, so that both ways give the same operator.
 template <int Dim>
 void apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p,
                          const ScalarField& Ap) {
@@ -86,15 +76,16 @@ void apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal
   const auto w = fluid.laplacian.weight;
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   Kokkos::parallel_for(
-      "greenwater::apply_pressure", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        real sum = 0;
-        if (!fixed(i)) {
-          near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-            if (j != i) sum += image.share * w(sqrt(dot(r, r))) * p(j);
-          });
-          sum = diagonal(i) * p(i) - K * sum;
-        }
-        Ap(i) = sum;
+      "greenwater::apply_pressure", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const Pack own = convert_lanes<Pack>(counted_lanes<IndexPack>() + i);
+        Pack sum{};
+        near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const Pack exact = image.share * w(sqrt(dot(r, r)));
+          const Pack weight = convert_lanes<Pack>(convert_lanes<Lanes<float, pack_lanes>>(exact));
+          sum += zero_unless(convert_lanes<Pack>(j) != own, weight * gather_pack(p, j));
+        });
+        store_product(fixed, K, diagonal, p, sum, i, Ap);
       });
 }
 
@@ -107,7 +98,7 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
     diagonal_ = uncleared<ScalarField>("greenwater::pressure_diagonal", fluid.particles.id.extent(0));
   }
   const bool flat = fluid.particles.dim == 2;
-  flat ? diagonal_in<2>(fluid, options_, dt, diagonal_) : diagonal_in<3>(fluid, options_, dt, diagonal_);
+  diagonal_of(fluid, options_, dt, diagonal_);
   if (options_.source == PressureSource::density)
     density_source(fluid, options_.source_factor, dt, rhs_);
   else

@@ -35,12 +35,12 @@ void sample_pressure_in(const Fluid& fluid, const CoordField& point, const Scala
 template <int Dim>
 coord wave_front_in(const Fluid& fluid) {
   const auto x = Read<CoordField>(fluid.particles.position);
-  const auto first = Read<OffsetField>(fluid.rows.near.first);
+  const auto neighbours = Read<IndexField>(fluid.rows.near.number);
   coord front = std::numeric_limits<coord>::lowest();
   Kokkos::parallel_reduce(
       "greenwater::wave_front", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, coord& most) {
-        if (first(i + 1) - first(i) > Dim) most = larger(most, x(i, 0));
+        if (neighbours(i) > Dim) most = larger(most, x(i, 0));
       },
       Kokkos::Max<coord>(front));
   return front;

@@ -10,6 +10,7 @@ template <int Dim>
 struct Sight {
   const Panel* panel;  // plain pointers: one of these is made for each particle
   const Piece* piece;
+  const Rim* rim;
   const Joint* joint;
   const int* joint_of_panel;
   const Mirror* mirror;
@@ -89,6 +90,24 @@ struct Sight {
     reach = room;
     begin = 0;
     end = count;
+  }
+
+  /// Is everything that x can reach in front of, or behind, one wall that goes on beyond it on all sides? Then what is in
+  /// sight, and what has an image, is a question of distances alone. After narrow().
+  KOKKOS_INLINE_FUNCTION bool one_endless_wall(const Point& x, coord radius) const {
+    if (end - begin != 1 || reach[begin] >= panels) return false;
+    const Panel& w = panel[reach[begin]];
+    if (w.first_rim < 0) return false;
+    const auto foot = greenwater::along(x, -side(w, x), as_vec(w.normal));
+    if (!on_panel(w, foot)) return false;
+    for (int k = w.first_rim; k < w.last_rim; ++k) {
+      const auto a = as_vec(rim[k].a), edge = difference(as_vec(rim[k].b), a);
+      const auto r = difference(foot, a);
+      const coord length2 = dot(edge, edge), s = length2 > 0 ? dot(r, edge) / length2 : coord(0);
+      const auto off = greenwater::along(r, -(s < 0 ? coord(0) : s > 1 ? coord(1) : s), edge);
+      if (dot(off, off) < radius * radius) return false;
+    }
+    return true;
   }
 
   /// Square of the distance from a to the image of b [m^2], which are sqrt(r2) apart; infinite where a wall of the path
@@ -251,6 +270,7 @@ KOKKOS_INLINE_FUNCTION Sight<Dim> sight_from(const MirrorWalls& walls, const Gri
   }
   return {walls.panel.data(),
           walls.piece.data(),
+          walls.rim.data(),
           walls.joint.data(),
           walls.joint_of_panel.data(),
           walls.mirror.data(),

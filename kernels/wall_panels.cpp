@@ -132,6 +132,35 @@ struct Groups {  // union and find
   void join(int i, int j) { parent[std::max(of(i), of(j))] = std::min(of(i), of(j)); }
 };
 
+// The rim of a panel: ends and edges of pieces that are not those of another piece too. Where an edge meets only a part of
+// another one both count, although they are inside: a rim too much costs time and nothing else.
+void add_rim(Panel& panel, WallPanels& made, int dim, coord tolerance) {
+  constexpr int most = 64;  // pieces
+  panel.first_rim = panel.last_rim = -1;
+  if (panel.last_piece - panel.first_piece > most) return;
+  panel.first_rim = static_cast<int>(made.rims.size());
+  const auto same = [&](const Vector& a, const Vector& b) { return (a - b).norm() <= tolerance; };
+  for (int k = panel.first_piece; k < panel.last_piece; ++k)
+    for (int e = 0; e < dim; ++e) {
+      const Vector a = corner(made.pieces[k], e), b = dim == 2 ? a : corner(made.pieces[k], (e + 1) % 3);
+      bool inside = false;
+      for (int m = panel.first_piece; m < panel.last_piece && !inside; ++m) {
+        if (m == k) continue;
+        if (dim == 2) inside = contains(made.pieces[m], 2, a, tolerance);
+        for (int f = 0; f < 3 && dim == 3 && !inside; ++f) {
+          const Vector c = corner(made.pieces[m], f), d = corner(made.pieces[m], (f + 1) % 3);
+          inside = (same(a, c) && same(b, d)) || (same(a, d) && same(b, c));
+        }
+      }
+      if (inside) continue;
+      Rim rim{};
+      put(rim.a, a);
+      put(rim.b, b);
+      made.rims.push_back(rim);
+    }
+  panel.last_rim = static_cast<int>(made.rims.size());
+}
+
 // Bounds of each panel, in the order of the panels.
 std::vector<Bounds> make_panels(const WallFaces& walls, const std::vector<Raw>& raw, coord tolerance,
                                 WallPanels& made) {
@@ -162,6 +191,7 @@ std::vector<Bounds> make_panels(const WallFaces& walls, const std::vector<Raw>& 
       bounds.back().take_in(raw[i].bounds);
     }
     panel.last_piece = static_cast<int>(made.pieces.size());
+    add_rim(panel, made, walls.dim, tolerance);
     put(panel.middle, (bounds.back().low + bounds.back().high) / 2);
     panel.extent = (bounds.back().high - bounds.back().low).norm() / 2;
     made.panels.push_back(panel);

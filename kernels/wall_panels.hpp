@@ -10,6 +10,7 @@ namespace greenwater {
 struct WallPanels {
   std::vector<Panel> panels;
   std::vector<Piece> pieces;  // of panel p: first_piece ... last_piece - 1
+  std::vector<Rim> rims;      // of panel p: first_rim ... last_rim - 1
   std::vector<Joint> joints;
   std::vector<int> joint_of_panel;  // of panel p: first_joint ... last_joint - 1
   std::vector<Mirror> mirrors;      // those of the panels first, then corners

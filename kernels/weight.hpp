@@ -1,7 +1,7 @@
 #pragma once
 // The weight function and what it sums to on the regular lattice.
 
-#include "core/fields.hpp"
+#include "core/lanes.hpp"
 
 namespace greenwater {
 
@@ -11,8 +11,12 @@ struct Weight {
   real radius = 0;  // r_e [m]
   real shift = 0;   // s [-]
 
-  KOKKOS_INLINE_FUNCTION real operator()(real r) const {
-    return r < radius ? radius / (r + shift * radius) - 1 / (1 + shift) : real(0);
+  bool operator==(const Weight&) const = default;
+
+  /// Of one distance, or of a pack of them.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T operator()(const T& r) const {
+    return zero_unless(r < radius, radius * inverse(r + shift * radius) - 1 / (1 + shift));
   }
 };
 

@@ -96,7 +96,6 @@ inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const Fl
   fluid.particles = particles_at(at, options.dim);
   fluid.grid.sort(fluid.particles);
   fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
-  number_density(fluid);
   return fluid;
 }
 
@@ -118,11 +117,46 @@ std::vector<double> by_id(const Fluid& fluid, const Field& field) {
   return values;
 }
 
+/// What particle i sees: entry by entry, neighbours first.
+struct Entry {
+  int j;
+  int mirror;  // -1: j itself
+  double share, weight;
+};
+
+/// The rows as they are stored, on the host. Entries of images of i itself, which have no weight in the operator, have
+/// weight 0; so has everything when weights are not kept.
+inline std::vector<std::vector<Entry>> entries_of(const Fluid& fluid) {
+  const Rows& near = fluid.rows.near;
+  const ImageRows& images = fluid.rows.images;
+  const auto first = host(near.first), image_first = host(images.first);
+  const auto number = host(near.number), index = host(near.index), image_number = host(images.number),
+             image_index = host(images.index), mirror = host(images.mirror);
+  const auto weight = host(near.weight);
+  const auto share = host(images.share);
+  std::vector<std::vector<Entry>> rows(fluid.particles.count);
+  for (int i = 0; i < fluid.particles.count; ++i) {
+    const auto at = [&](const auto& begin, int k) {
+      return begin(i / row_lanes) + static_cast<std::int64_t>(k) * row_lanes + i % row_lanes;
+    };
+    const auto weight_at = [&](int k) { return weight.extent(0) > 0 ? weight(at(first, k)) : 0.0; };
+    int k = 0;
+    for (; k < number(i); ++k) rows[i].push_back({index(at(first, k)), -1, 1, weight_at(k)});
+    if (image_number.extent(0) == 0) continue;
+    for (int m = 0; m < image_number(i); ++m) {
+      const auto place = at(image_first, m);
+      const int j = image_index(place);
+      rows[i].push_back({j, mirror(place), share(place), j == i ? 0 : weight_at(k++)});
+    }
+  }
+  return rows;
+}
+
 /// The operator as a dense matrix, one unit vector at a time.
 inline Eigen::MatrixXd dense(const PressureSystem& system) {
   const int n = system.count();
   Eigen::MatrixXd matrix(n, n);
-  ScalarField p("greenwater::test_unit", n), Ap("greenwater::test_product", n);
+  ScalarField p("greenwater::test_unit", padded(n)), Ap("greenwater::test_product", padded(n));
   for (int j = 0; j < n; ++j) {
     const auto unit = Kokkos::create_mirror(p);
     unit(j) = host(system.fixed())(j) ? 0 : 1;  // the operator takes p = 0 at the surface for granted

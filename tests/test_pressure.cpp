@@ -199,7 +199,7 @@ double slope_of_column(coord wall_acceleration) {
   Fluid fluid = fluid_at(lattice(20, 60, l0), walls, {.spacing = l0});
   fluid.gravity[1] = -g;
   clear_acceleration(fluid);
-  const CoordField x0("greenwater::test_start", fluid.particles.count, 2);
+  const CoordField x0("greenwater::test_start", fluid.particles.position.extent(0), 2);
   Kokkos::deep_copy(x0, fluid.particles.position);
   predict(fluid, dt);
   Kokkos::deep_copy(fluid.particles.position,

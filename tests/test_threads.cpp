@@ -11,28 +11,31 @@ using namespace greenwater::test;
 
 namespace {
 
-// FNV-1a over the bytes of a field's first entries.
+// FNV-1a over the bytes of a value, and of a field's first entries.
+template <class T>
+void add_to(std::uint64_t& hash, const T& value) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
+  for (std::size_t b = 0; b < sizeof value; ++b) hash = (hash ^ bytes[b]) * 1099511628211ULL;
+}
+
 template <class Field>
-void add_to(std::uint64_t& hash, const Field& field, std::int64_t entries) {
+void add_to(std::uint64_t& hash, const Field& field, int entries) {
   const auto values = host(field);
-  for (std::int64_t k = 0; k < entries; ++k) {
-    const auto value = values(k);
-    const auto* bytes = reinterpret_cast<const unsigned char*>(&value);
-    for (std::size_t b = 0; b < sizeof value; ++b) hash = (hash ^ bytes[b]) * 1099511628211ULL;
-  }
+  for (int k = 0; k < entries; ++k) add_to(hash, values(k));
 }
 
 std::uint64_t fingerprint(const Fluid& fluid) {
   std::uint64_t hash = 1469598103934665603ULL;
   add_to(hash, fluid.particles.id, fluid.particles.count);
-  add_to(hash, fluid.rows.near.first, fluid.particles.count + 1);
-  add_to(hash, fluid.rows.near.index, fluid.rows.near.entries);
-  add_to(hash, fluid.rows.near.weight, fluid.rows.near.entries);
-  if (fluid.rows.images.entries > 0) {
-    add_to(hash, fluid.rows.images.index, fluid.rows.images.entries);
-    add_to(hash, fluid.rows.images.mirror, fluid.rows.images.entries);
-  }
+  for (const auto& row : entries_of(fluid))
+    for (const Entry& entry : row) {
+      add_to(hash, entry.j);
+      add_to(hash, entry.mirror);
+      add_to(hash, entry.share);
+      add_to(hash, entry.weight);
+    }
   add_to(hash, fluid.particles.number_density, fluid.particles.count);
+  add_to(hash, fluid.rows.near.weight_sum, fluid.particles.count);
   return hash;
 }
 

@@ -121,7 +121,7 @@ TEST_CASE("nothing is seen by way of a corner through the wall that ends it", "[
   CHECK(fluid_at(both, open, options).rows.near.entries == 2);
   CHECK(parted.rows.near.entries == 0);
   CHECK(parted.rows.images.entries % 2 == 0);
-  CHECK(host(alone.rows.images.first)(1) == host(parted.rows.images.first)(1));  // the other one adds nothing
+  CHECK(host(alone.rows.images.number)(0) == host(parted.rows.images.number)(0));  // the other one adds nothing
 }
 
 TEST_CASE("an image by way of the floor is not seen through a plate that stands on it", "[unit][walls]") {
@@ -140,12 +140,11 @@ TEST_CASE("sight is mutual to the last bit", "[unit][walls]") {
   x.erase(std::remove_if(x.begin(), x.end(), [](const auto& p) { return p[0] > 0.9 && p[0] < 1.13 && p[1] < 0.7; }),
           x.end());
   const Fluid fluid = fluid_at(x, walls, options_with(3.1, real(0.05)));
-  const auto first = host(fluid.rows.images.first);
-  const auto index = host(fluid.rows.images.index), mirror = host(fluid.rows.images.mirror);
-  const auto weight = host(fluid.rows.images.weight);
-  std::map<std::array<int, 3>, double> seen;
+  const auto rows = entries_of(fluid);
+  std::map<std::array<int, 3>, std::array<double, 2>> seen;
   for (int i = 0; i < fluid.particles.count; ++i)
-    for (auto k = first(i); k < first(i + 1); ++k) seen[{i, index(k), mirror(k)}] = weight(k);
+    for (const Entry& entry : rows[i])
+      if (entry.mirror >= 0) seen[{i, entry.j, entry.mirror}] = {entry.share, entry.weight};
   REQUIRE(seen.size() > 1000);
   const auto mirrors = host(fluid.walls.mirror);
   for (const auto& [who, w] : seen) {
@@ -165,5 +164,5 @@ TEST_CASE("walls on one line that touch are one", "[unit][walls]") {
 TEST_CASE("a scene without walls holds no memory for them", "[unit][walls]") {
   const Fluid fluid = fluid_at(random_cloud(50, 2, 1));
   CHECK(fluid.walls.mirror.extent(0) + fluid.walls.panel.extent(0) == 0);
-  CHECK(fluid.rows.images.first.extent(0) == 0);
+  CHECK(fluid.rows.images.first.extent(0) + fluid.rows.images.number.extent(0) == 0);
 }

@@ -3,18 +3,23 @@
 namespace greenwater {
 namespace {
 
-// Calls f(j, n, speed) for each particle or image that i collides with: n points from i to it, speed is that of approach.
+// Calls f(j, n, speed, so) for particles or images j that a pack of particles collides with, in those lanes where it is so:
+// n points from the one to the other, speed is that of approach.
 template <int Dim, class F>
 KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& near, const Read<VectorField>& u, real distance,
                                                int i, F f) {
-  const auto ui = load<Dim>(u, i);
-  const real half = real(0.5);  // of two images at the edge of a corner the nearer one
-  near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-    const real r2 = dot(r, r);
-    if (r2 >= distance * distance || r2 <= 0 || image.share < half) return;
-    const auto uj = image ? image.velocity(load<Dim>(u, j)) : load<Dim>(u, j);
-    const real approach = dot(difference(ui, uj), r) / sqrt(r2);
-    if (approach > 0) f(j, along(Vec<Dim>{}, 1 / sqrt(r2), r), approach);
+  const auto ui = load_pack<Dim>(u, i);
+  near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+    const Pack r2 = dot(r, r), share = Pack{} + image.share;
+    // Of two images at the edge of a corner the nearer one.
+    const auto close = (r2 < distance * distance) & (r2 > 0) & (share >= real(0.5));
+    if (!any_lane(close)) return;
+    const auto uj = image.velocity(gather_pack<Dim>(u, j));
+    const Pack scale = 1 / sqrt(select(r2 > 0, r2, all_lanes<Pack>(real(1))));
+    const auto n = along(Vec<Dim, Pack>{}, scale, r);
+    const Pack approach = dot(difference(ui, uj), n);
+    const auto so = close & (approach > 0);
+    if (any_lane(so)) f(j, n, approach, so);
   });
 }
 
@@ -22,14 +27,21 @@ template <int Dim>
 int count_collisions_in(const Fluid& fluid, real distance, const IndexField& number) {
   const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
+  const int count = fluid.particles.count;
   int total = 0;
   Kokkos::parallel_reduce(
-      "greenwater::count_collisions", Range(0, fluid.particles.count),
-      KOKKOS_LAMBDA(const int i, int& sum) {
-        int count = 0;
-        for_each_collision(near, u, distance, i, [&](int, const Vec<Dim>&, real) { ++count; });
-        number(i) = count;
-        sum += count;
+      "greenwater::count_collisions", packs(count),
+      KOKKOS_LAMBDA(const int pack, int& sum) {
+        const int i = pack * pack_lanes;
+        Pack collisions{};
+        for_each_collision(near, u, distance, i,
+                           [&](const IndexPack&, const Vec<Dim, Pack>&, const Pack&, const auto& so) {
+                             collisions += zero_unless(so, all_lanes<Pack>(real(1)));
+                           });
+        for (int l = 0; l < pack_lanes && i + l < count; ++l) {
+          number(i + l) = static_cast<int>(lane(collisions, l));
+          sum += number(i + l);
+        }
       },
       total);
   return total;
@@ -42,14 +54,19 @@ void collide_in(const Fluid& fluid, real distance, real restitution, const Index
   const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   Kokkos::parallel_for(
-      "greenwater::collision", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        Vec<Dim> change{};
-        if (number(i) > 0)
-          for_each_collision(near, u, distance, i, [&](const int j, const Vec<Dim>& n, const real approach) {
-            const int share = number(i) > number(j) ? number(i) : number(j);
-            change = along(change, -(1 + restitution) / 2 * approach / share, n);
-          });
-        store(du, i, change);
+      "greenwater::collision", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const auto mine = convert_lanes<Pack>(load_pack(number, i));
+        Vec<Dim, Pack> change{};
+        if (any_lane(mine > 0))
+          for_each_collision(
+              near, u, distance, i,
+              [&](const IndexPack& j, const Vec<Dim, Pack>& n, const Pack& approach, const auto& so) {
+                const auto busier = larger(mine, convert_lanes<Pack>(gather_pack(number, j)));
+                const Pack share = larger(busier, all_lanes<Pack>(real(1)));
+                change = along(change, zero_unless(so, -(1 + restitution) / 2 * approach / share), n);
+              });
+        store_pack(du, i, change);
       });
 }
 

@@ -10,15 +10,15 @@ void viscosity_in(const Fluid& fluid, real nu, const VectorField& a) {
   const auto w = fluid.laplacian.weight;
   const real factor = nu * 2 * Dim / (fluid.laplacian.reference.lambda * fluid.laplacian.reference.n0);
   Kokkos::parallel_for(
-      "greenwater::viscosity", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
-        const auto ui = load<Dim>(u, i);
-        Vec<Dim> sum{};
-        near.for_each(i, [&](const int j, const Vec<Dim>& r, const Image<Dim>& image) {
-          const auto uj = image ? image.sticking_velocity(load<Dim>(u, j)) : load<Dim>(u, j);
-          const real weight = image.share * w(sqrt(dot(r, r)));
-          for (int d = 0; d < Dim; ++d) sum[d] += (uj[d] - ui[d]) * weight;
+      "greenwater::viscosity", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const auto ui = load_pack<Dim>(u, i);
+        Vec<Dim, Pack> sum{};
+        near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const auto uj = image.sticking_velocity(gather_pack<Dim>(u, j));
+          sum = along(sum, image.share * w(sqrt(dot(r, r))), difference(uj, ui));
         });
-        for (int d = 0; d < Dim; ++d) a(i, d) += factor * sum[d];
+        store_pack(a, i, along(load_pack<Dim>(a, i), all_lanes<Pack>(factor), sum));
       });
 }
 
