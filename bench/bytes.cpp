@@ -1,24 +1,31 @@
 #include "bench/bytes.hpp"
 
-#include "core/real.hpp"
+#include <cmath>
+
+#include "core/lanes.hpp"
 
 namespace greenwater::bench {
 namespace {
 
-constexpr double index = 4, offset = 8, flag = 1, number = sizeof(real), place = sizeof(coord);
+constexpr double index = sizeof(int), offset = sizeof(std::int64_t), flag = sizeof(std::uint8_t);
+constexpr double number = sizeof(real), place = sizeof(coord), sum = sizeof(accum), weight = sizeof(float);
 
 double scalars(const Counts& c) { return c.particles * number; }
 double vectors(const Counts& c) { return c.particles * c.dim * number; }
 double places(const Counts& c) { return c.particles * c.dim * place; }
 double flags(const Counts& c) { return c.particles * flag; }
 
-double row_ends(const Counts& c) { return (c.particles + 1) * offset; }
+// Of every chunk of rows first and length.
+double chunks(const Counts& c) { return std::ceil(c.particles / row_lanes) * (offset + index); }
 
-// first, index
-double rows(const Counts& c) { return row_ends(c) + c.entries * index; }
+// chunks, number; index of the neighbours, which come first in a row
+double rows(const Counts& c) { return chunks(c) + c.particles * index + c.entries * index; }
 
-// first; index, mirror, share
-double image_rows(const Counts& c) { return c.walls ? row_ends(c) + c.image_entries * (2 * index + number) : 0; }
+// chunks, number; index; of true images mirror and share
+double image_rows(const Counts& c) {
+  if (!c.walls) return 0;
+  return chunks(c) + c.particles * index + c.image_places * index + c.image_entries * (index + number);
+}
 
 // Who is around whom: both rows and x.
 double around(const Counts& c) { return rows(c) + image_rows(c) + places(c); }
@@ -53,21 +60,12 @@ Traffic sort(const Counts& c) {
   return {find + begin + fill + settle + reorder, 2 * cells + 2 * per_particle + 2 * fields};
 }
 
-// Each row is counted and then filled.
+// Search, weights and n in one pass. Where rows are counted first, x is read twice.
 Traffic build_rows(const Counts& c) {
-  const double cells = c.cells * index;
-  const double look = places(c) + cells;                                    // x, first of the cells
-  const double begin = 4 * row_ends(c);                                     // written; scan; read when filled
-  const double entry = index + (c.keep_weights ? number : 0);               // index, weight
-  const double image = 2 * index + number + (c.keep_weights ? number : 0);  // index, mirror, share, weight
-  const double near = 2 * look + begin + c.entries * entry;
-  const double images = c.walls ? 2 * look + begin + c.image_entries * image : 0;
-  const double kept = c.entries * entry + (c.walls ? c.image_entries * image + row_ends(c) : 0) + row_ends(c);
-  return {near + images, look + kept};
-}
-
-Traffic density(const Counts& c) {
-  const double once = around(c) + scalars(c);  // rows, x; n written
+  const double look = places(c) + c.cells * index;                                 // x, first of the cells
+  const double heads = chunks(c) + c.particles * (index + sum);                    // chunks, number, sum of weights
+  const double near = heads + c.places * (index + (c.keep_weights ? weight : 0));  // index, weight
+  const double once = look + near + image_rows(c) + scalars(c);                    // n written
   return {once, once};
 }
 
@@ -77,9 +75,9 @@ Traffic gradient(const Counts& c) {
 }
 
 Traffic assemble(const Counts& c) {
-  const double diagonal = around(c) + flags(c) + scalars(c);  // rows, x; surface; diagonal written
-  const double source = 2 * scalars(c) + flags(c);            // n; surface; b written
-  return {diagonal + source, around(c) + flags(c) + 3 * scalars(c)};
+  const double diagonal = c.particles * sum + flags(c) + scalars(c);  // sum of weights; surface; diagonal written
+  const double source = 2 * scalars(c) + flags(c);                    // n; surface; b written
+  return {diagonal + source, c.particles * sum + flags(c) + 3 * scalars(c)};
 }
 
 // One turn of conjugate gradients with the diagonal as preconditioner.
@@ -101,9 +99,7 @@ Traffic pressure(const Counts& c) {
 }  // namespace
 
 Traffic product_traffic(const Counts& c, bool keep_weights) {
-  const double weights = c.entries * number + (c.walls ? c.image_entries * number : 0);
-  const double images = c.walls ? row_ends(c) + c.image_entries * index : 0;  // without mirror and share
-  const double walk = keep_weights ? rows(c) + images + weights : around(c);
+  const double walk = keep_weights ? chunks(c) + c.places * (index + weight) : around(c);
   const double once = walk + flags(c) + 3 * scalars(c);  // surface; diagonal, p; Ap written
   return {once, once};
 }
@@ -112,8 +108,8 @@ const std::vector<RegionModel>& region_models() {
   static const std::vector<RegionModel> all{{"step", "", nullptr},          {"viscosity", "step", viscosity},
                                             {"predict", "step", move},      {"collision", "step", collision},
                                             {"sort", "step", sort},         {"rows", "step", build_rows},
-                                            {"density", "step", density},   {"pressure", "step", pressure},
-                                            {"gradient", "step", gradient}, {"correct", "step", move}};
+                                            {"pressure", "step", pressure}, {"gradient", "step", gradient},
+                                            {"correct", "step", move}};
   return all;
 }
 

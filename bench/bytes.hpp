@@ -13,8 +13,10 @@ struct Counts {
   int dim = 2;
   double particles = 0;
   double cells = 0;          // of the grid
-  double entries = 0;        // of the rows of neighbours
-  double image_entries = 0;  // of the rows of images
+  double entries = 0;        // neighbours
+  double places = 0;         // of the operator's rows: neighbours, images and fillers
+  double image_entries = 0;  // images
+  double image_places = 0;   // with fillers
   bool walls = true;         // there are rows of images, be they empty
   bool keep_weights = true;
   double iterations = 0;       // of the pressure solve

@@ -183,7 +183,9 @@ Json product_row(const Json& base, const Fluid& fluid, bool keep_weights, const 
   counts.dim = fluid.particles.dim;
   counts.particles = fluid.particles.count;
   counts.entries = static_cast<double>(fluid.rows.near.entries);
+  counts.places = static_cast<double>(fluid.rows.near.stored);
   counts.image_entries = static_cast<double>(fluid.rows.images.entries);
+  counts.image_places = static_cast<double>(fluid.rows.images.stored);
   counts.walls = fluid.walls.count > 0;
   const Traffic traffic = product_traffic(counts, keep_weights);
   const double rate = 1e-6 * traffic.moved / ms.median, triad = triads.at(traffic.touched).median;

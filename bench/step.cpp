@@ -38,7 +38,9 @@ void add_rows(const Fluid& fluid, double part, Counts& counts) {
   counts.keep_weights = fluid.keep_weights;
   counts.particles += part * fluid.particles.count;
   counts.entries += part * static_cast<double>(fluid.rows.near.entries);
+  counts.places += part * static_cast<double>(fluid.rows.near.stored);
   counts.image_entries += part * static_cast<double>(fluid.rows.images.entries);
+  counts.image_places += part * static_cast<double>(fluid.rows.images.stored);
 }
 
 Overview look(Water& water, Listener& listener, int steps) {

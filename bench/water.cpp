@@ -50,7 +50,6 @@ void put_particles(const State& state, const Scene& scene, Fluid& fluid) {
   copy_scalar(state.pressure, p.pressure);
   fluid.time = state.time;
   settle_rows(fluid);
-  number_density(fluid);
   mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
 }
 
@@ -145,7 +144,6 @@ Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state) 
   fluid.faces = build_walls(cut);
   make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), fluid.spacing);
   settle_rows(fluid);
-  number_density(fluid);
   mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
   return fluid;
 }

@@ -9,10 +9,10 @@
 
 namespace greenwater {
 
-using ScalarField = Kokkos::View<real*, Device>;                         // (i)
-using VectorField = Kokkos::View<real**, Kokkos::LayoutLeft, Device>;    // (i, axis), axis < dimension; axis by axis
-using CoordField = Kokkos::View<coord**, Kokkos::LayoutLeft, Device>;    // (i, axis)
-using FloatField = Kokkos::View<float*, Device>;                         // what needs seven digits and no more
+using ScalarField = Kokkos::View<real*, Device>;                       // (i)
+using VectorField = Kokkos::View<real**, Kokkos::LayoutLeft, Device>;  // (i, axis), axis < dimension; axis by axis
+using CoordField = Kokkos::View<coord**, Kokkos::LayoutLeft, Device>;  // (i, axis)
+using FloatField = Kokkos::View<float*, Device>;                       // what needs seven digits and no more
 using AccumField = Kokkos::View<accum*, Device>;
 using IndexField = Kokkos::View<int*, Device>;
 using OffsetField = Kokkos::View<std::int64_t*, Device>;  // where a row begins: more entries than an int counts

@@ -11,7 +11,8 @@
 
 #include "core/fields.hpp"
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && \
+    !defined(GREENWATER_PLAIN_LANES)
 #define GREENWATER_VECTORS 1
 #include <immintrin.h>
 #endif
@@ -19,8 +20,9 @@
 namespace greenwater {
 
 /// Whether kernels run on the host, where one thread works on many particles.
-constexpr bool on_host = Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace, Space::memory_space>::accessible &&
-                         std::is_same<Space::memory_space, Kokkos::HostSpace>::value;
+constexpr bool on_host =
+    Kokkos::SpaceAccessibility<Kokkos::DefaultHostExecutionSpace, Space::memory_space>::accessible &&
+    std::is_same<Space::memory_space, Kokkos::HostSpace>::value;
 
 /// Rows of neighbours that lie side by side in memory: a vector of floats on a host, a warp on a GPU.
 constexpr int row_lanes = on_host ? 16 : 32;

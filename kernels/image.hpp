@@ -110,7 +110,8 @@ struct Images {
                                               const Vec<Dim, Lanes<coord, pack_lanes>>& x) const {
     Pack offset{};
     for (int l = 0; l < pack_lanes; ++l)
-      if (image[l].mirror) set_lane(offset, l, image[l].pressure_offset(lane_of<Dim, real>(g, l), lane_of<Dim, coord>(x, l)));
+      if (image[l].mirror)
+        set_lane(offset, l, image[l].pressure_offset(lane_of<Dim, real>(g, l), lane_of<Dim, coord>(x, l)));
     return offset;
   }
 

@@ -47,8 +47,8 @@ std::int64_t begin_chunks(const IndexField& number, const IndexField& length, co
 std::int64_t sum_of(const IndexField& number, int count) {
   std::int64_t total = 0;
   Kokkos::parallel_reduce(
-      "greenwater::count_entries", Range(0, count),
-      KOKKOS_LAMBDA(const int i, std::int64_t& sum) { sum += number(i); }, total);
+      "greenwater::count_entries", Range(0, count), KOKKOS_LAMBDA(const int i, std::int64_t& sum) { sum += number(i); },
+      total);
   return total;
 }
 
@@ -127,8 +127,8 @@ void grow_places(NeighborRows& rows, bool keep) {
 
 // Counts, makes room, and fills: on any device.
 template <int Dim>
-void build_in_two_passes(NeighborRows& rows, const RowSearch<Dim>& search, const IndexField& total, const ScalarField& n,
-                         int count, bool keep) {
+void build_in_two_passes(NeighborRows& rows, const RowSearch<Dim>& search, const IndexField& total,
+                         const ScalarField& n, int count, bool keep) {
   count_rows_in(search, rows.near, rows.images, total, count);
   rows.near.entries = sum_of(rows.near.number, count);
   rows.near.stored = begin_chunks(total, rows.near.length, rows.near.first, count);

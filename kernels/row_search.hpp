@@ -14,7 +14,7 @@ struct RowSearch {
   GridShape grid;
   MirrorWalls walls;
   Weight density, laplacian;
-  coord radius;    // of the search [m]
+  coord radius;     // of the search [m]
   bool one_weight;  // density and laplacian are the same function
 
   static constexpr int capacity = 96;  // walls and corners near one particle; with more it goes on, slower

@@ -14,15 +14,15 @@ inline constexpr int chunks_of(int count) { return (count + row_lanes - 1) / row
 /// The rows of the pressure operator. Row i: first its neighbours, then the particles whose images it sees (an image has
 /// the pressure of its particle; those of i itself drop out), then fillers: i itself with weight 0.
 struct Rows {
-  std::int64_t entries = 0;   // neighbours
-  std::int64_t stored = 0;    // places in use, with images and fillers
-  OffsetField first;          // (chunk) place of the first entry of its first row
-  IndexField length;          // (chunk) entries of its longest row
-  IndexField number;          // (i) neighbours of i
-  IndexField index;           // (place) neighbour j
-  FloatField weight;          // (place) w of the Laplacian's radius, times the share of an image, at the positions of the
-                              // last build [-]; empty when not kept
-  AccumField weight_sum;      // (i) sum of the row's weights as they are stored [-]
+  std::int64_t entries = 0;  // neighbours
+  std::int64_t stored = 0;   // places in use, with images and fillers
+  OffsetField first;         // (chunk) place of the first entry of its first row
+  IndexField length;         // (chunk) entries of its longest row
+  IndexField number;         // (i) neighbours of i
+  IndexField index;          // (place) neighbour j
+  FloatField weight;      // (place) w of the Laplacian's radius, times the share of an image, at the positions of the
+                          // last build [-]; empty when not kept
+  AccumField weight_sum;  // (i) sum of the row's weights as they are stored [-]
 
   /// Place of entry k of row i.
   KOKKOS_INLINE_FUNCTION std::int64_t place(int i, int k) const {
@@ -34,12 +34,12 @@ struct Rows {
 struct ImageRows {
   std::int64_t entries = 0;
   std::int64_t stored = 0;
-  OffsetField first;   // (chunk)
-  IndexField length;   // (chunk), mostly 0
-  IndexField number;   // (i) images that i sees
-  IndexField index;    // (place) particle j
-  IndexField mirror;   // (place) by which its image is made
-  ScalarField share;   // (place) with which the image counts [-]: 1 but near the edges of corners
+  OffsetField first;  // (chunk)
+  IndexField length;  // (chunk), mostly 0
+  IndexField number;  // (i) images that i sees
+  IndexField index;   // (place) particle j
+  IndexField mirror;  // (place) by which its image is made
+  ScalarField share;  // (place) with which the image counts [-]: 1 but near the edges of corners
 
   KOKKOS_INLINE_FUNCTION std::int64_t place(int i, int k) const {
     return first(i / row_lanes) + static_cast<std::int64_t>(k) * row_lanes + i % row_lanes;

@@ -35,7 +35,9 @@ Counts counts_of(const Fluid& fluid) {
   counts.particles = fluid.particles.count;
   counts.cells = 10;
   counts.entries = static_cast<double>(fluid.rows.near.entries);
+  counts.places = static_cast<double>(fluid.rows.near.stored);
   counts.image_entries = static_cast<double>(fluid.rows.images.entries);
+  counts.image_places = static_cast<double>(fluid.rows.images.stored);
   return counts;
 }
 
@@ -152,18 +154,24 @@ TEST_CASE("launches and memory are heard", "[unit][bench]") {
 TEST_CASE("bytes of four particles in a line, counted by hand", "[unit][bench]") {
   const Counts counts = counts_of(four_in_line());
   REQUIRE(counts.particles == 4);
-  REQUIRE(counts.entries == 6);         // 1 2 2 1
-  REQUIRE(counts.image_entries == 10);  // each sees its own image as well
-  const double row_ends = 5 * 8, x = 4 * 2 * place, vector = 4 * 2 * number, scalar = 4 * number, surface = 4;
-  const double near = row_ends + 6 * 4, images = row_ends + 10 * (4 + 4 + number), around = near + images + x;
+  REQUIRE(counts.entries == 6);             // 1 2 2 1
+  REQUIRE(counts.places == 4 * row_lanes);  // with the images of others: 2 4 4 2
+  REQUIRE(counts.image_entries == 10);      // with its own: 2 3 3 2
+  REQUIRE(counts.image_places == 3 * row_lanes);
+  const double chunk = 8 + 4, numbers = 4 * 4;
+  const double x = 4 * 2 * place, vector = 4 * 2 * number, scalar = 4 * number, sums = 4 * 8, surface = 4;
+  const double near = chunk + numbers + 6 * 4;
+  const double images = chunk + numbers + 3 * row_lanes * 4 + 10 * (4 + number);
+  const double around = near + images + x;
 
   CHECK(traffic_in("predict", counts).moved == 2 * x + 3 * vector);
   CHECK(traffic_in("predict", counts).touched == x + 2 * vector);
-  CHECK(traffic_in("density", counts).moved == around + scalar);
+  CHECK(traffic_in("rows", counts).moved ==
+        x + 10 * 4 + chunk + numbers + sums + 4 * row_lanes * (4 + 4) + images + scalar);
   CHECK(traffic_in("viscosity", counts).moved == around + vector + 2 * vector);
   CHECK(traffic_in("gradient", counts).moved == around + scalar + vector);
   CHECK(product_traffic(counts, false).moved == around + surface + 3 * scalar);
-  const double kept = near + 6 * number + row_ends + 10 * (4 + number) + surface + 3 * scalar;
+  const double kept = chunk + 4 * row_lanes * (4 + 4) + surface + 3 * scalar;
   CHECK(product_traffic(counts, true).moved == kept);
 
   Counts more = counts;
@@ -171,7 +179,7 @@ TEST_CASE("bytes of four particles in a line, counted by hand", "[unit][bench]")
   const double ten = traffic_in("pressure", more).moved - traffic_in("pressure", counts).moved;
   CHECK(ten == Approx(10 * (kept + 18 * scalar)));
   more.walls = false;
-  CHECK(traffic_in("density", more).moved == near + x + scalar);
+  CHECK(traffic_in("gradient", more).moved == near + x + scalar + vector);
 }
 
 TEST_CASE("states come back as they were written, and others are refused", "[unit][bench]") {
@@ -240,11 +248,11 @@ TEST_CASE("a barrier in the water parts the rows", "[unit][bench]") {
   const auto across = [&](const std::string& plate) {
     const Fluid fluid = before_pressure(scene, bench_scene(size, {}, plate), state);
     const auto x = host(fluid.particles.position);
-    const auto first = host(fluid.rows.near.first);
-    const auto index = host(fluid.rows.near.index);
+    const auto rows = entries_of(fluid);
     int pairs = 0;
     for (int i = 0; i < fluid.particles.count; ++i)
-      for (auto k = first(i); k < first(i + 1); ++k) pairs += (x(i, 0) < 0.1237) != (x(index(k), 0) < 0.1237);
+      for (const Entry& entry : rows[i])
+        if (entry.mirror < 0) pairs += (x(i, 0) < 0.1237) != (x(entry.j, 0) < 0.1237);
     return pairs;
   };
   const int whole = across("none"), low = across("plate");

@@ -65,7 +65,7 @@ TEST_CASE("each weight has its own radius, and the rows reach as far as the wide
   const auto id = host(fluid.particles.id);
   const auto rows = entries_of(fluid);
   for (int i = 0; i < fluid.particles.count; ++i) {
-    if (id(i) != 112) continue;    // the middle
+    if (id(i) != 112) continue;   // the middle
     CHECK(rows[i].size() == 44);  // within 3.9 l0
     int within_laplacian = 0;
     for (const Entry& entry : rows[i]) within_laplacian += entry.weight > 0;

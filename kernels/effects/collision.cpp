@@ -59,13 +59,12 @@ void collide_in(const Fluid& fluid, real distance, real restitution, const Index
         const auto mine = convert_lanes<Pack>(load_pack(number, i));
         Vec<Dim, Pack> change{};
         if (any_lane(mine > 0))
-          for_each_collision(
-              near, u, distance, i,
-              [&](const IndexPack& j, const Vec<Dim, Pack>& n, const Pack& approach, const auto& so) {
-                const auto busier = larger(mine, convert_lanes<Pack>(gather_pack(number, j)));
-                const Pack share = larger(busier, all_lanes<Pack>(real(1)));
-                change = along(change, zero_unless(so, -(1 + restitution) / 2 * approach / share), n);
-              });
+          for_each_collision(near, u, distance, i,
+                             [&](const IndexPack& j, const Vec<Dim, Pack>& n, const Pack& approach, const auto& so) {
+                               const auto busier = larger(mine, convert_lanes<Pack>(gather_pack(number, j)));
+                               const Pack share = larger(busier, all_lanes<Pack>(real(1)));
+                               change = along(change, zero_unless(so, -(1 + restitution) / 2 * approach / share), n);
+                             });
         store_pack(du, i, change);
       });
 }
