@@ -188,6 +188,7 @@ Json product_row(const Json& base, const Fluid& fluid, bool keep_weights, const 
   counts.image_places = static_cast<double>(fluid.rows.images.stored);
   counts.walls = fluid.walls.count > 0;
   const Traffic traffic = product_traffic(counts, keep_weights);
+  triads.measure(traffic.touched);
   const double rate = 1e-6 * traffic.moved / ms.median, triad = triads.at(traffic.touched).median;
   Json row = base;
   row["weights"] = keep_weights ? "kept" : "recomputed";

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <set>
 
 #include "bench/bytes.hpp"
 #include "bench/measure.hpp"
@@ -113,6 +114,14 @@ Traffic traffic_of(const std::string& region, const Counts& counts) {
   return sum;
 }
 
+// One for each size of working set.
+void measure_triads(const Counts& counts, Triads& triads) {
+  std::set<double> sizes;
+  for (const RegionModel& model : region_models())
+    if (model.traffic) sizes.insert(Triads::size_of(model.traffic(counts).touched));
+  for (const double bytes : sizes) triads.measure(bytes);
+}
+
 Json region_row(const Json& base, const std::string& region, const Spread& ms, const Overview& overview,
                 Triads& triads) {
   Json row = base;
@@ -184,6 +193,7 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
     for (int round = 0; round < options.rounds; ++round) {
       water.put(state);
       time_round(water, options.steps, samples);
+      measure_triads(overview.counts, triads);
     }
   }
   samples["other"] = others(samples);

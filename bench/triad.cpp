@@ -33,8 +33,8 @@ double seconds_of(const Array& a, const Array& b, const Array& c, int passes) {
 
 }  // namespace
 
-Spread triad(double bytes) {
-  constexpr int samples = 9;
+std::vector<double> triad(double bytes) {
+  constexpr int samples = 5;
   constexpr double long_enough = 2e-3;  // s, beside which the clock and one late thread are small
   const auto length = static_cast<int>(std::clamp(bytes / 24, 64.0, 2e9));
   const auto a = uncleared<Array>("greenwater::triad_a", length);
@@ -47,14 +47,28 @@ Spread triad(double bytes) {
   const int passes = std::max(1, static_cast<int>(long_enough / std::max(1e-9, seconds_of(a, b, c, 1))));
   std::vector<double> rates;
   for (int k = 0; k < samples; ++k) rates.push_back(24e-9 * length * passes / seconds_of(a, b, c, passes));
-  return spread_of(rates);
+  return rates;
 }
 
-const Spread& Triads::at(double bytes) {
-  const double steps = std::round(std::log2(std::max(bytes, 1.0)) * 8);
-  const double size = std::exp2(steps / 8);
-  const auto found = measured_.find(size);
-  return found != measured_.end() ? found->second : measured_.emplace(size, triad(size)).first->second;
+// Eight to the octave.
+double Triads::size_of(double bytes) { return std::exp2(std::round(std::log2(std::max(bytes, 1.0)) * 8) / 8); }
+
+void Triads::measure(double bytes) {
+  const double size = size_of(bytes);
+  std::vector<double>& samples = samples_[size];
+  const std::vector<double> more = triad(size);
+  samples.insert(samples.end(), more.begin(), more.end());
+}
+
+Spread Triads::at(double bytes) {
+  if (samples_.count(size_of(bytes)) == 0) measure(bytes);
+  return spread_of(samples_.at(size_of(bytes)));
+}
+
+std::map<double, Spread> Triads::all() const {
+  std::map<double, Spread> spreads;
+  for (const auto& [bytes, samples] : samples_) spreads[bytes] = spread_of(samples);
+  return spreads;
 }
 
 }  // namespace greenwater::bench
