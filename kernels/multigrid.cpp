@@ -34,13 +34,24 @@ struct Window {
 
 template <class V>
 KOKKOS_INLINE_FUNCTION V absolute(const V& v) {
-  return larger(v, -v);
+  if constexpr (is_scalar<V>)
+    return fabs(v);
+  else
+    return (V)((NodeIndex)v & 0x7fffffff);  // without the bit of the sign
 }
 
 /// How much a particle has of a node: 1 at it, 0 one cell away.
-template <class V>
-KOKKOS_INLINE_FUNCTION V hat(const V& distance) {
-  return larger(V{}, 1.0f - absolute(distance));
+KOKKOS_INLINE_FUNCTION FloatPack hat(const FloatPack& distance) {
+  return larger(FloatPack{}, 1.0f - absolute(distance));
+}
+
+/// How much the particles from p on have of node (i, j, k).
+template <int Dim>
+KOKKOS_INLINE_FUNCTION FloatPack shares_of(const Seats& seats, int p, int i, int j, int k) {
+  FloatPack share = hat(load_lanes<FloatPack>(&seats.place[0](p)) - static_cast<float>(i)) *
+                    hat(load_lanes<FloatPack>(&seats.place[1](p)) - static_cast<float>(j));
+  if constexpr (Dim == 3) share *= hat(load_lanes<FloatPack>(&seats.place[2](p)) - static_cast<float>(k));
+  return share;
 }
 
 template <class V>
@@ -154,38 +165,75 @@ void row_windows(const Seats& seats, const FloatSystem& system, int layer, const
       });
 }
 
-// Stencils of the first level: P^T (A P) / K. Each node gathers from the particles of the cells around it.
+// What each cell's particles have of P^T (A P) / K: for each of its corners, their windows weighted with their shares of it.
+// A cell has the number of its lowest corner.
 template <int Dim>
-void collect_stencils(const Seats& seats, const Level& level, int layer, const FloatField& window) {
-  constexpr int size = stencil_size(Dim);
+void collect_cells(const Seats& seats, const Level& level, const FloatField& window, const FloatField& cells) {
+  constexpr int corners = 1 << Dim;
   Kokkos::parallel_for(
-      "greenwater::grid_collect_stencils", Range(0, level.active * node_lanes), KOKKOS_LAMBDA(const int number) {
-        const Item pack(level, number / node_lanes * items_of_pack, size);
-        const int lane = number % node_lanes, i = pack.i + lane;
-        float* stencil = level.stencil + pack.stencil + lane;
-        if (layer == 0)
-          for (int e = 0; e < size; ++e) stencil[e * node_lanes] = 0;
+      "greenwater::grid_collect_cells", Range(0, level.active * node_lanes), KOKKOS_LAMBDA(const int number) {
+        const Item pack(level, number / node_lanes * items_of_pack, stencil_size(Dim));
+        const int lane = number % node_lanes, node[3] = {pack.i + lane, pack.j, pack.k};
         const GridShape& grid = seats.grid;
-        for (int cz = 0; cz < (Dim == 3 ? 2 : 1); ++cz)
+        Window sum[corners] = {};
+        int begin = 0, end = 0;
+        if (node[0] < grid.cells[0] && node[1] < grid.cells[1] && node[2] < grid.cells[2]) {
+          const int cell = (node[2] * grid.cells[1] + node[1]) * grid.cells[0] + node[0];
+          begin = seats.first(cell);
+          end = seats.first(cell + 1);
+        }
+        for (int p = begin; p < end; ++p) {
+          if (seats.place[0](p) == far_away) continue;
+          float share[3][2];
+          for (int d = 0; d < Dim; ++d) {
+            share[d][1] = seats.place[d](p) - static_cast<float>(node[d]);
+            share[d][0] = 1 - share[d][1];
+          }
+          for (int c = 0; c < corners; ++c)
+            sum[c].add(share[0][c & 1] * share[1][c / 2 & 1] * (Dim == 3 ? share[2][c / 4] : 1.0f),
+                       &window(p * window_nodes));
+        }
+        for (int c = 0; c < corners; ++c) sum[c].store(&cells(((pack.value + lane) * corners + c) * window_nodes));
+      });
+}
+
+// Where the cells i, i + 1 ... of line (j, k) are among those collected; cells that are not there have slot 0.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION NodeIndex cells_along(const Level& level, int i, int j, int k) {
+  NodeIndex place{};
+  if (j < 0 || k < 0) return place;
+  const int* slot = level.slot + (k * level.nodes[1] + j) * level.packs;
+  for (int l = 0; l < float_lanes; ++l)
+    if (i + l >= 0)
+      set_lane(place, l, (slot[(i + l) / node_lanes] * node_lanes + (i + l) % node_lanes) * (window_nodes << Dim));
+  return place;
+}
+
+// Stencils of the first level: each node takes its part of the cells around it.
+template <int Dim>
+void collect_stencils(const Level& level, int layer, const FloatField& cells) {
+  constexpr int size = stencil_size(Dim), plane = across * across;
+  const float* parts = cells.data();
+  Kokkos::parallel_for(
+      "greenwater::grid_collect_stencils", Range(0, items(level)), KOKKOS_LAMBDA(const int number) {
+        const Item at(level, number, size);
+        // The window of a cell begins one node before the cell.
+        for (int cz = 0; cz < (Dim == 3 ? 2 : 1); ++cz) {
+          FloatPack sum[plane] = {};
           for (int cy = 0; cy < 2; ++cy)
             for (int cx = 0; cx < 2; ++cx) {
-              const int ci = i - 1 + cx, cj = pack.j - 1 + cy, ck = Dim == 3 ? pack.k - 1 + cz : 0;
-              if (ci < 0 || ci >= grid.cells[0] || cj < 0 || cj >= grid.cells[1] || ck < 0 || ck >= grid.cells[2])
-                continue;
-              const int cell = (ck * grid.cells[1] + cj) * grid.cells[0] + ci;
-              Window sum{};
-              for (int p = seats.first(cell); p < seats.first(cell + 1); ++p) {
-                float share = hat(seats.place[0](p) - static_cast<float>(i)) *
-                              hat(seats.place[1](p) - static_cast<float>(pack.j));
-                if constexpr (Dim == 3) share *= hat(seats.place[2](p) - static_cast<float>(pack.k));
-                if (share > 0) sum.add(share, &window(p * window_nodes));
-              }
-              float part[window_nodes];
-              sum.store(part);
-              float* plane = stencil + (cz + layer) * (Dim == 3 ? across * across * node_lanes : 0);
+              const auto place = cells_along<Dim>(level, at.i - 1 + cx, at.j - 1 + cy, Dim == 3 ? at.k - 1 + cz : 0);
+              const int corner = (1 - cx) + 2 * (1 - cy) + (Dim == 3 ? 4 * (1 - cz) : 0);
+              const float* part = parts + corner * window_nodes;
               for (int m = 0; m < wide; ++m)
-                for (int n = 0; n < wide; ++n) plane[((cy + m) * across + cx + n) * node_lanes] += part[m * wide + n];
+                for (int n = 0; n < wide; ++n, ++part)
+                  sum[(cy + m) * across + cx + n] += gather_lanes<FloatPack>(part, place);
             }
+          float* to = level.stencil + at.stencil + (Dim == 3 ? (cz + layer) * plane * node_lanes : 0);
+          const bool first = layer == 0 || cz == 1;  // layer after layer of windows comes to a plane of stencils twice
+          for (int e = 0; e < plane; ++e, to += node_lanes)
+            store_lanes(to, first ? sum[e] : sum[e] + load_lanes<FloatPack>(to));
+        }
       });
 }
 
@@ -217,16 +265,12 @@ void restrict_particles(const Seats& seats, const Level& level, const FloatField
               const int cells = (ck * grid.cells[1] + cj) * grid.cells[0];
               const int end = seats.first(cells + high);
               for (int p = seats.first(cells + low); p < end; p += float_lanes) {
-                FloatPack share = hat(load_lanes<FloatPack>(&seats.place[0](p)) - static_cast<float>(i)) *
-                                  hat(load_lanes<FloatPack>(&seats.place[1](p)) - static_cast<float>(pack.j));
-                if constexpr (Dim == 3)
-                  share *= hat(load_lanes<FloatPack>(&seats.place[2](p)) - static_cast<float>(pack.k));
+                const FloatPack share = shares_of<Dim>(seats, p, i, pack.j, pack.k);
                 const NodeIndex left = end - p - counted_lanes<NodeIndex>();
                 sum += zero_unless(left > 0, share * load_lanes<FloatPack>(&t(p)));
               }
             }
-        float b = 0;
-        for (int l = 0; l < float_lanes; ++l) b += greenwater::lane(sum, l);
+        const float b = static_cast<float>(sum_lanes(sum));
         level.b[pack.value + lane] = b;
         level.x[pack.position + lane] = level.relax[pack.value + lane] * b;
       });
@@ -289,11 +333,12 @@ void grow(FloatField& field, const std::string& label, std::int64_t size) {
 }
 
 template <int Dim>
-void make_first_level(const Seats& seats, const FloatSystem& system, const GridLevels& levels,
-                      const FloatField& window) {
+void make_first_level(const Seats& seats, const FloatSystem& system, const Level& level, const FloatField& window,
+                      const FloatField& cells) {
   for (int layer = 0; layer < (Dim == 3 ? wide : 1); ++layer) {
     row_windows<Dim>(seats, system, layer, window);
-    collect_stencils<Dim>(seats, levels.first(), layer, window);
+    collect_cells<Dim>(seats, level, window, cells);
+    collect_stencils<Dim>(level, layer, cells);
   }
 }
 
@@ -321,8 +366,11 @@ void Multigrid::update(const PressureSystem& system) {
   dim == 2 ? seat_particles<2>(system, system_, place_) : seat_particles<3>(system, system_, place_);
   find_packs(seats, levels_.first(), levels_.wanted());
   levels_.activate();
-  dim == 2 ? make_first_level<2>(seats, system_, levels_, window_)
-           : make_first_level<3>(seats, system_, levels_, window_);
+  const Level& level = levels_.first();
+  grow(cells_, "greenwater::multigrid_cells",
+       static_cast<std::int64_t>(level.active + 1) * node_lanes * (window_nodes << dim));
+  dim == 2 ? make_first_level<2>(seats, system_, level, window_, cells_)
+           : make_first_level<3>(seats, system_, level, window_, cells_);
   levels_.coarsen();
 }
 
