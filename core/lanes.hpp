@@ -185,6 +185,10 @@ inline V sqrt(const V& v) {
     V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)positive);
     for (int step = 0; step < 2; ++step) y += y * (0.5 - 0.5 * positive * y * y);
     return v * y;
+  } else if constexpr (std::is_same<V, Lanes<float, 8>>::value) {
+    return (V)_mm256_maskz_sqrt_ps(0xff, (__m256)v);
+  } else if constexpr (std::is_same<V, Lanes<float, 16>>::value) {
+    return (V)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
   }
 #endif
   V root{};
@@ -224,6 +228,8 @@ KOKKOS_INLINE_FUNCTION V gather_lanes(const T* from, const Index& j) {
       return (V)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)j, from, 8);
     if constexpr (std::is_same<T, float>::value && sizeof(V) == 64)
       return (V)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff, (__m512i)j, from, 4);
+    if constexpr (std::is_same<T, int>::value && sizeof(V) == 64)
+      return (V)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff, (__m512i)j, from, 4);
 #endif
     V v{};
     for (std::size_t l = 0; l < sizeof(V) / sizeof(v[0]); ++l) v[l] = from[j[l]];
