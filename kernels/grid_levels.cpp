@@ -182,6 +182,8 @@ void launch_prolong(const Level& fine, const Level& coarse) {
       KOKKOS_LAMBDA(const int number) { prolong_to<Dim>(fine, coarse, number); });
 }
 
+Team one_team() { return on_host ? Team(1, 1) : Team(1, Kokkos::AUTO); }
+
 // For every item of a level, by the threads of a team; all are done before it returns.
 template <class F>
 KOKKOS_INLINE_FUNCTION void for_items(const Member& team, const Level& level, const F& f) {
@@ -203,7 +205,7 @@ KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& sta
 template <int Dim>
 void launch_small_levels(const LevelStack& stack, int from) {
   Kokkos::parallel_for(
-      "greenwater::grid_small_levels", Team(1, Kokkos::AUTO), KOKKOS_LAMBDA(const Member& team) {
+      "greenwater::grid_small_levels", one_team(), KOKKOS_LAMBDA(const Member& team) {
         const int last = stack.count - 1;
         for (int l = from; l < last; ++l) {
           const Level &fine = stack.level[l], &coarse = stack.level[l + 1];
