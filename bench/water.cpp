@@ -53,6 +53,25 @@ void put_particles(const State& state, const Scene& scene, Fluid& fluid) {
   mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
 }
 
+template <auto make_preconditioner>
+class Plain : public TimedSolver {
+ public:
+  explicit Plain(const CgOptions& options) : preconditioner_(make_preconditioner()), cg_(options) {}
+  void set_up(const PressureSystem& system) override { preconditioner_->update(system); }
+  SolveReport solve(const PressureSystem& system, const ScalarField& p) override {
+    return cg_.solve(system, *preconditioner_, p);
+  }
+
+ private:
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ConjugateGradient cg_;
+};
+
+template <class Solver>
+std::unique_ptr<TimedSolver> made(const CgOptions& options) {
+  return std::make_unique<Solver>(options);
+}
+
 template <class Choice>
 std::vector<Choice> chosen(const std::vector<Choice>& all, const std::vector<std::string>& names,
                            std::string Choice::*name, const std::string& what) {
@@ -73,7 +92,11 @@ std::vector<Choice> chosen(const std::vector<Choice>& all, const std::vector<std
 }  // namespace
 
 const std::vector<PreconditionerChoice>& all_preconditioners() {
-  static const std::vector<PreconditionerChoice> all{{"jacobi", true, make_jacobi}, {"none", false, make_identity}};
+  // clang-format off
+  static const std::vector<PreconditionerChoice> all{
+      {"jacobi", true, false, made<Plain<make_jacobi>>},
+      {"none", false, false, made<Plain<make_identity>>}};
+  // clang-format on
   return all;
 }
 
