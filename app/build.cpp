@@ -164,9 +164,12 @@ std::unique_ptr<Scheme> build_scheme(const Scene& scene) {
   options.pressure.source_factor = static_cast<real>(mps.relaxation_factor);
   options.pressure.compressibility = static_cast<real>(mps.compressibility);
   options.pressure.source = mps.pressure.source == "density" ? PressureSource::density : PressureSource::divergence;
-  options.cg = {static_cast<real>(mps.pressure.tolerance), static_cast<real>(mps.pressure.absolute_tolerance),
-                mps.pressure.max_iterations};
-  options.jacobi = mps.pressure.preconditioner == "jacobi";
+  options.solver.cg = {static_cast<real>(mps.pressure.tolerance), static_cast<real>(mps.pressure.absolute_tolerance),
+                       mps.pressure.max_iterations};
+  const std::string& way = mps.pressure.preconditioner;
+  options.solver.preconditioning = way == "multigrid" ? Preconditioning::multigrid
+                                   : way == "jacobi"  ? Preconditioning::jacobi
+                                                      : Preconditioning::none;
   options.surface_ratio = static_cast<real>(mps.free_surface_ratio);
   return make_classic(options);
 }

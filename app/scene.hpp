@@ -105,10 +105,10 @@ struct BodyForceCase {
 };
 
 struct PressureCase {
-  std::string preconditioner = "jacobi";  // jacobi | none
-  std::string weights = "kept";           // kept (beside the rows) | recomputed (a third of the memory)
-  double tolerance = 1e-8;                // relative residual
-  double absolute_tolerance = 0;          // residual norm [Pa/m^2]; 0 = off
+  std::string preconditioner = "multigrid";  // multigrid | jacobi | none
+  std::string weights = "kept";              // kept (beside the rows) | recomputed (a third of the memory)
+  double tolerance = 1e-8;                   // relative residual
+  double absolute_tolerance = 0;             // residual norm [Pa/m^2]; 0 = off
   int max_iterations = 2000;
   std::string on_stall = "fail";   // fail (exit 3) | warn
   std::string source = "density";  // density | divergence

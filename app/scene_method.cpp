@@ -18,8 +18,12 @@ int small_count(Section& section, const std::string& key, std::int64_t low, std:
 }
 
 void read_pressure(Section section, PressureCase& options) {
-  options.preconditioner = section.choice("preconditioner", {"jacobi", "none"}, options.preconditioner);
   options.weights = section.choice("weights", {"kept", "recomputed"}, options.weights);
+  const bool kept = options.weights == "kept";
+  if (!kept) options.preconditioner = "jacobi";
+  options.preconditioner = section.choice("preconditioner", {"multigrid", "jacobi", "none"}, options.preconditioner);
+  require_at(section.place("preconditioner"), kept || options.preconditioner != "multigrid",
+             "preconditioner = \"multigrid\" needs weights = \"kept\"; with \"recomputed\" take \"jacobi\"");
   options.tolerance = section.number("tolerance", "-", between(0, 1), options.tolerance);
   options.absolute_tolerance = section.number("absolute_tolerance", "Pa/m^2", at_least(0), options.absolute_tolerance);
   require_at(section.place("tolerance"), options.tolerance > 0 || options.absolute_tolerance > 0,

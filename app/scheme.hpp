@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "kernels/conjugate_gradient.hpp"
 #include "kernels/effects/effect.hpp"
+#include "kernels/pressure_solver.hpp"
 
 namespace greenwater {
 
@@ -24,8 +24,7 @@ class Scheme {
 
 struct ClassicOptions {
   PressureOptions pressure;
-  CgOptions cg;
-  bool jacobi = true;               // precondition with the diagonal
+  SolverOptions solver;
   real surface_ratio = real(0.97);  // beta: n < beta n^0 is the surface
 };
 

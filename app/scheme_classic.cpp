@@ -20,10 +20,7 @@ namespace {
 class Classic : public Scheme {
  public:
   explicit Classic(const ClassicOptions& options)
-      : options_(options),
-        pressure_(options.pressure),
-        preconditioner_(options.jacobi ? make_jacobi() : make_identity()),
-        cg_(options.cg) {}
+      : options_(options), pressure_(options.pressure), solver_(make_pressure_solver(options.solver)) {}
 
   StepReport step(Fluid& fluid, Effects& effects, real dt) override {
     StepReport report;
@@ -53,14 +50,12 @@ class Classic : public Scheme {
   SolveReport solve_pressure(Fluid& fluid, real dt) {
     Region region("pressure");
     pressure_.assemble(fluid, dt);
-    preconditioner_->update(pressure_);
-    return cg_.solve(pressure_, *preconditioner_, fluid.particles.pressure);
+    return solver_->solve(pressure_, fluid.particles.pressure);
   }
 
   ClassicOptions options_;
   PressureSystem pressure_;
-  std::unique_ptr<Preconditioner> preconditioner_;
-  ConjugateGradient cg_;
+  std::unique_ptr<PressureSolver> solver_;
 };
 
 }  // namespace

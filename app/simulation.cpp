@@ -87,6 +87,9 @@ void Simulation::look_after(const StepReport& report) {
                  static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
                  scene_.dimension == 2 ? " kg/m" : " kg"),
          report.departed.outside);
+  if (!report.solve.recovery.empty() && report.solve.converged)
+    note("recovery",
+         text_of("the pressure solve failed (", report.solve.cause, ") and went on with ", report.solve.recovery), 1);
   if (report.solve.converged) return;
   const std::string text =
       text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",

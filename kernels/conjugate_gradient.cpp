@@ -63,6 +63,7 @@ SolveReport ConjugateGradient::solve(const PressureSystem& system, const Precond
     if (rz <= 0) return stopped(k, residual / b_norm, "the preconditioner is not positive on this residual");
     system.apply(d_, q_);  // q = A d
     const accum dq = blas::dot(d_, q_, count);
+    if (!std::isfinite(dq)) return stopped(k, residual / b_norm, "not a number");
     if (dq <= singular * blas::dot(d_, d_, count))
       return stopped(k, residual / b_norm,
                      "the matrix is not positive on this direction (a closed cluster without a free surface?)");

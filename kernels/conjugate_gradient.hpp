@@ -17,7 +17,8 @@ struct SolveReport {
   int iterations = 0;
   real residual = 0;  // |b - A p| / |b| at the end (0 for b = 0)
   bool converged = true;
-  std::string_view cause = "converged";  // why it stopped
+  std::string_view cause = "converged";  // why it stopped, or why the first way did not work
+  std::string_view recovery = {};        // what helped then; empty when nothing was needed
 };
 
 class ConjugateGradient {

@@ -18,6 +18,13 @@ void diagonal_of(const Fluid& fluid, const PressureOptions& options, real dt, co
       KOKKOS_LAMBDA(const int i) { diagonal(i) = fixed(i) ? real(1) : static_cast<real>(C_K * sum(i) + shift); });
 }
 
+void raise(const ScalarField& diagonal, const FlagField& fixed, real part, int count) {
+  Kokkos::parallel_for(
+      "greenwater::raise_diagonal", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        if (!fixed(i)) diagonal(i) *= 1 + part;
+      });
+}
+
 void density_source(const Fluid& fluid, real gamma, real dt, const ScalarField& b) {
   const auto n = Read<ScalarField>(fluid.particles.number_density);
   const auto fixed = Read<FlagField>(fluid.particles.surface);
@@ -30,7 +37,7 @@ void density_source(const Fluid& fluid, real gamma, real dt, const ScalarField& 
 
 template <int Dim>
 void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
-  const auto near = around<Dim>(fluid);
+  const auto near = around_unmoved<Dim>(fluid, fluid.gradient.weight);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const auto w = fluid.gradient.weight;
@@ -44,7 +51,7 @@ void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const auto uj = image.velocity(gather_pack<Dim>(u, j));
           const Pack r2 = dot(r, r);
-          const Pack weight = image.share * w(sqrt(r2)) * inverse(larger(r2, all_lanes<Pack>(touching)));
+          const Pack weight = image.weight(w, r2) * inverse(larger(r2, all_lanes<Pack>(touching)));
           div += zero_unless(r2 > touching, dot(difference(uj, ui), r) * weight);
         });
         for (int l = 0; l < pack_lanes; ++l) b(i + l) = fixed(i + l) ? real(0) : factor * lane(div, l);
@@ -104,6 +111,10 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
   else
     flat ? divergence_source_in<2>(fluid, dt, rhs_) : divergence_source_in<3>(fluid, dt, rhs_);
 }
+
+void PressureSystem::raise_diagonal(real part) { raise(diagonal_, fixed(), part, count()); }
+
+real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
 
 void PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);

@@ -27,6 +27,9 @@ class PressureSystem {
   /// `fluid` must outlive every apply() until the next assemble().
   void assemble(const Fluid& fluid, real dt);
 
+  /// Makes the diagonal larger by this part of itself: as if the fluid were more compressible.
+  void raise_diagonal(real part);
+
   /// Ap = A p; 0 where the surface is.
   void apply(const ScalarField& p, const ScalarField& Ap) const;
 
@@ -34,6 +37,8 @@ class PressureSystem {
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
   const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
   const FlagField& fixed() const { return fluid_->particles.surface; }
+  const Fluid& fluid() const { return *fluid_; }
+  real factor() const;  // K [1/m^2]
 
  private:
   PressureOptions options_;

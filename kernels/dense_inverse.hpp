@@ -1,0 +1,13 @@
+#pragma once
+// The inverse of a small matrix, on the host.
+
+namespace greenwater {
+
+constexpr int largest_dense = 64;
+
+/// The inverse of the symmetric matrix A(row, column) of `size` rows, which should be positive definite, in its place.
+/// What little is added to its diagonal (1e-5 of it) keeps rounding from making it singular where only compressibility
+/// holds a cluster of particles; where that is not enough, more.
+void invert_in_place(double* A, int size);
+
+}  // namespace greenwater

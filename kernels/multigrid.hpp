@@ -1,0 +1,50 @@
+#pragma once
+// A preconditioner for the pressure whose iterations do not grow with the number of particles: one V cycle with a Jacobi
+// sweep on the particles before and after, and between them a correction from the background grid.
+//
+// A particle's row reaches as far as the largest radius, so a sweep levels all that changes over a cell or less; what is
+// left is smooth, and the corners of the cells carry it: P interpolates from them linearly along each axis, P^T A P is
+// their matrix, and further levels with every second node each do the rest (kernels/grid_levels.hpp). Everything is
+// float, as it only shows the way.
+
+#include "kernels/grid_levels.hpp"
+#include "kernels/pressure_system.hpp"
+
+namespace greenwater {
+
+/// The pressure system over K in float. Rows of particles at the surface are left out: zero in and out.
+struct FloatSystem {
+  int count = 0;
+  Rows rows;
+  FloatField diagonal;  // (i) A_ii / K [-]; 0 where the surface is and beyond the last particle
+  FloatField inverse;   // (i) 1 over that, and 0
+};
+
+class Multigrid {
+ public:
+  /// Looks at the assembled system: its float copy, and the matrices of all levels. Needs rows with weights.
+  void update(const PressureSystem& system);
+
+  /// z = M r, M symmetric and positive. r must be 0 where the surface is, and for the last particle's whole pack.
+  /// Fields have room for one pack more than the particles fill.
+  void apply(const FloatField& r, const FloatField& z);
+
+  /// The same from `first` = r / diagonal, which is lost; returns r . z.
+  accum finish(const FloatField& r, const FloatField& first, const FloatField& z);
+
+  const FloatSystem& system() const { return system_; }
+  const GridLevels& levels() const { return levels_; }
+
+ private:
+  void grow_fields(int dim);
+
+  FloatSystem system_;
+  GridLevels levels_;
+  GridShape grid_;
+  IndexField first_;        // of the grid's cells
+  FloatField place_[3];     // (i) of the particles, in cells from the grid's origin [-]; far away at the surface
+  FloatField window_;       // (i, node) A P / K at the nodes around the particle's cell
+  FloatField first_sweep_;  // (i) r / diagonal, for apply()
+};
+
+}  // namespace greenwater

@@ -1,0 +1,95 @@
+#include "kernels/pressure_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "kernels/blas.hpp"
+#include "kernels/refined_cg.hpp"
+
+namespace greenwater {
+namespace {
+
+void clear(const ScalarField& p, int count) {
+  Kokkos::parallel_for(
+      "greenwater::clear_pressure", Range(0, count), KOKKOS_LAMBDA(const int i) { p(i) = 0; });
+}
+
+void clear_unless_finite(const ScalarField& p, int count) {
+  if (!std::isfinite(blas::dot(p, p, count))) clear(p, count);
+}
+
+class Plain : public PressureSolver {
+ public:
+  Plain(std::unique_ptr<Preconditioner> preconditioner, const CgOptions& options)
+      : preconditioner_(std::move(preconditioner)), cg_(options) {}
+
+  SolveReport solve(PressureSystem& system, const ScalarField& p) override {
+    clear_unless_finite(p, system.count());
+    preconditioner_->update(system);
+    const SolveReport report = cg_.solve(system, *preconditioner_, p);
+    if (!report.converged) clear_unless_finite(p, system.count());
+    return report;
+  }
+
+ private:
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ConjugateGradient cg_;
+};
+
+CgOptions shortened(CgOptions options, int most) {
+  options.max_iterations = std::min(options.max_iterations, most);
+  return options;
+}
+
+class WithMultigrid : public PressureSolver {
+ public:
+  explicit WithMultigrid(const SolverOptions& options)
+      : cg_(shortened(options.cg, options.most_multigrid_iterations)),
+        last_resort_(make_jacobi(), options.cg),
+        raise_(options.raise) {}
+
+  SolveReport solve(PressureSystem& system, const ScalarField& p) override {
+    clear_unless_finite(p, system.count());
+    const SolveReport first = with_multigrid(system, p);
+    if (first.converged || !std::isfinite(first.residual)) return first;
+
+    system.raise_diagonal(raise_);
+    clear(p, system.count());
+    SolveReport report = with_multigrid(system, p);
+    report.recovery = "a larger diagonal";
+    if (!report.converged) {
+      clear(p, system.count());
+      const int before = report.iterations;
+      report = last_resort_.solve(system, p);
+      report.iterations += before;
+      report.recovery = "a larger diagonal and Jacobi's preconditioner";
+    }
+    report.iterations += first.iterations;
+    report.cause = first.cause;
+    return report;
+  }
+
+ private:
+  SolveReport with_multigrid(const PressureSystem& system, const ScalarField& p) {
+    multigrid_.update(system);
+    return cg_.solve(system, multigrid_, p);
+  }
+
+  Multigrid multigrid_;
+  RefinedCg cg_;
+  Plain last_resort_;
+  real raise_;
+};
+
+}  // namespace
+
+std::unique_ptr<PressureSolver> make_pressure_solver(const SolverOptions& options) {
+  switch (options.preconditioning) {
+    case Preconditioning::jacobi: return std::make_unique<Plain>(make_jacobi(), options.cg);
+    case Preconditioning::none: return std::make_unique<Plain>(make_identity(), options.cg);
+    case Preconditioning::multigrid: break;
+  }
+  return std::make_unique<WithMultigrid>(options);
+}
+
+}  // namespace greenwater
