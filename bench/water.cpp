@@ -4,6 +4,7 @@
 #include "io/suggest.hpp"
 #include "kernels/density.hpp"
 #include "kernels/motion.hpp"
+#include "kernels/refined_cg.hpp"
 
 namespace greenwater::bench {
 namespace {
@@ -67,6 +68,19 @@ class Plain : public TimedSolver {
   ConjugateGradient cg_;
 };
 
+class WithMultigrid : public TimedSolver {
+ public:
+  explicit WithMultigrid(const CgOptions& options) : cg_(options) {}
+  void set_up(const PressureSystem& system) override { multigrid_.update(system); }
+  SolveReport solve(const PressureSystem& system, const ScalarField& p) override {
+    return cg_.solve(system, multigrid_, p);
+  }
+
+ private:
+  Multigrid multigrid_;
+  RefinedCg cg_;
+};
+
 template <class Solver>
 std::unique_ptr<TimedSolver> made(const CgOptions& options) {
   return std::make_unique<Solver>(options);
@@ -95,6 +109,7 @@ const std::vector<PreconditionerChoice>& all_preconditioners() {
   // clang-format off
   static const std::vector<PreconditionerChoice> all{
       {"jacobi", true, false, made<Plain<make_jacobi>>},
+      {"multigrid", true, true, made<WithMultigrid>},
       {"none", false, false, made<Plain<make_identity>>}};
   // clang-format on
   return all;
@@ -152,6 +167,19 @@ State Water::state() const {
   state.velocity = vector_of(p.velocity, p.count, p.dim);
   state.pressure = scalar_of<double>(p.pressure, p.count);
   return state;
+}
+
+GridNodes nodes_in_use(const Fluid& fluid) {
+  GridNodes nodes;
+  if (!fluid.keep_weights) return nodes;
+  PressureSystem system({});
+  system.assemble(fluid, 1);
+  Multigrid multigrid;
+  multigrid.update(system);
+  const LevelStack& stack = multigrid.levels().stack();
+  for (int l = 0; l < stack.count; ++l) nodes.all += stack.level[l].active * node_lanes;
+  nodes.first = stack.level[0].active * node_lanes;
+  return nodes;
 }
 
 Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state) {

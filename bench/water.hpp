@@ -34,6 +34,12 @@ class Water {
   std::int64_t steps_ = 0;
 };
 
+/// Nodes that the multigrid would have in use for this fluid: those of its first level, and of all.
+struct GridNodes {
+  double first = 0, all = 0;
+};
+GridNodes nodes_in_use(const Fluid& fluid);
+
 /// The fluid as the pressure solve of the next step sees it: x*, u*, n and rows between the walls of the scene and
 /// those that `cut` adds, p still that of the step before.
 Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state);

@@ -32,8 +32,8 @@ WallFaces wide_tank(coord width, coord height) {
 // A column at rest in the left third of a tank.
 Fluid column(int nx, coord spacing = l0, coord jitter = 0.1, unsigned seed = 1) {
   const coord width = nx * spacing;
-  Fluid fluid = fluid_at(lattice(nx, 2 * nx, spacing, 0, 0, jitter, seed), wide_tank(3 * width, 3 * width),
-                         {.spacing = spacing});
+  Fluid fluid =
+      fluid_at(lattice(nx, 2 * nx, spacing, 0, 0, jitter, seed), wide_tank(3 * width, 3 * width), {.spacing = spacing});
   mark_surface(fluid, real(0.97));
   return fluid;
 }
@@ -182,8 +182,8 @@ Eigen::MatrixXd dense(const Level& level, int dim) {
     for (int z = k - deep; z <= k + deep; ++z)
       for (int y = j - reach; y <= j + reach; ++y)
         for (int x = i - reach; x <= i + reach; ++x, entry += node_lanes) {
-          const bool inside = x >= 0 && x < nodes.along[0] && y >= 0 && y < nodes.along[1] && z >= 0 &&
-                              z < nodes.along[2];
+          const bool inside =
+              x >= 0 && x < nodes.along[0] && y >= 0 && y < nodes.along[1] && z >= 0 && z < nodes.along[2];
           if (inside)
             A(row, (z * nodes.along[1] + y) * nodes.along[0] + x) = *entry;
           else
@@ -268,8 +268,8 @@ std::array<int, 2> iterations_over(const std::vector<int>& sizes) {
 }
 
 Fluid fallen_3d(int nx, coord radius) {
-  Fluid fluid = fluid_at(wedge(nx, 0.2 / nx, 0.2, nx), {},
-                         {.dim = 3, .spacing = 0.2 / nx, .radius = radius, .margin = 0.1});
+  Fluid fluid =
+      fluid_at(wedge(nx, 0.2 / nx, 0.2, nx), {}, {.dim = 3, .spacing = 0.2 / nx, .radius = radius, .margin = 0.1});
   mark_surface(fluid, real(0.97));
   set_falling(fluid);
   return fluid;
@@ -325,8 +325,9 @@ TEST_CASE("the pressure is that of Jacobi's preconditioner, with 1, 2 and 4 thre
   const std::string self = std::filesystem::read_symlink("/proc/self/exe");
   for (const char* threads : {"1", "2", "4"}) {
     INFO(threads << " threads");
-    CHECK(std::system(("OMP_NUM_THREADS=" + std::string(threads) + " '" + self + "' '[.multigrid_and_jacobi]' > /dev/null")
-                          .c_str()) == 0);
+    CHECK(std::system(
+              ("OMP_NUM_THREADS=" + std::string(threads) + " '" + self + "' '[.multigrid_and_jacobi]' > /dev/null")
+                  .c_str()) == 0);
   }
 }
 
