@@ -11,8 +11,8 @@
 
 #include "core/fields.hpp"
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && \
-    !defined(GREENWATER_PLAIN_LANES)
+#if defined(GREENWATER_HOST_ONLY) && defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && \
+    !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
 #define GREENWATER_VECTORS 1
 #include <immintrin.h>
 #endif
@@ -123,17 +123,18 @@ KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
   }
 }
 
-/// The sum of all lanes, in accum.
+/// The sum of all lanes, in accum: of halves, of halves of halves ...
 template <class V>
 KOKKOS_INLINE_FUNCTION accum sum_lanes(const V& v) {
   if constexpr (is_scalar<V>) {
     return v;
   } else {
-    constexpr int width = static_cast<int>(sizeof(V) / sizeof(v[0]));
-    const auto wide = __builtin_convertvector(v, Lanes<accum, width>);
-    accum sum = 0;
-    for (int l = 0; l < width; ++l) sum += wide[l];
-    return sum;
+    using T = std::remove_cv_t<std::remove_reference_t<decltype(V{}[0])>>;
+    constexpr int half = static_cast<int>(sizeof(V) / sizeof(T)) / 2;
+    Lanes<T, half> low, high;
+    __builtin_memcpy(&low, &v, sizeof low);
+    __builtin_memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof low, sizeof high);
+    return sum_lanes(convert_lanes<Lanes<accum, half>>(low) + convert_lanes<Lanes<accum, half>>(high));
   }
 }
 

@@ -119,21 +119,18 @@ void check_symmetric_and_near_inverse(const Fluid& fluid, double least, double m
   const Eigen::MatrixXd M = all(active, active);
   CHECK((M - M.transpose()).cwiseAbs().maxCoeff() <= 1e-6 * M.cwiseAbs().maxCoeff());
   const Eigen::MatrixXd A = test::dense(system)(active, active) / system.factor();
-  const Eigen::VectorXd values = Eigen::MatrixXd(M * A).eigenvalues().real();
+  // Those of M A are those of L^T M L with A = L L^T.
+  const Eigen::LLT<Eigen::MatrixXd> factors(A);
+  REQUIRE(factors.info() == Eigen::Success);
+  const Eigen::MatrixXd L = factors.matrixL();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(L.transpose() * M * L, Eigen::EigenvaluesOnly);
+  const Eigen::VectorXd values = solver.eigenvalues();
   INFO("eigenvalues of M A from " << values.minCoeff() << " to " << values.maxCoeff());
   CHECK(values.minCoeff() >= least);
   CHECK(values.maxCoeff() <= most);
 }
 
 }  // namespace
-
-TEST_CASE("the multigrid is symmetric and near the inverse", "[unit][multigrid]") {
-  check_symmetric_and_near_inverse(column(15), 0.7, 1.001);
-  check_symmetric_and_near_inverse(fallen(12), 0.7, 1.001);
-  Fluid deep = fluid_at(random_cloud(700, 3, 8), {}, {.dim = 3, .spacing = 0.125, .radius = 2.1});
-  mark_surface(deep, real(0.7));
-  check_symmetric_and_near_inverse(deep, 0.7, 1.001);
-}
 
 namespace {
 
@@ -276,6 +273,12 @@ Fluid fallen_3d(int nx, coord radius) {
 }
 
 }  // namespace
+
+TEST_CASE("the multigrid is symmetric and near the inverse", "[unit][multigrid]") {
+  check_symmetric_and_near_inverse(column(15), 0.75, 1.0001);
+  check_symmetric_and_near_inverse(fallen(12), 0.75, 1.0001);
+  check_symmetric_and_near_inverse(fallen_3d(7, 2.1), 0.75, 1.0001);
+}
 
 TEST_CASE("iterations are few and do not grow, 1,250 to 20,000 particles", "[unit][multigrid]") {
   const auto [fewest, most] = iterations_over({25, 50, 100});
