@@ -114,33 +114,37 @@ double floats(const Counts& c) { return c.particles * weight; }
 constexpr double window = 16;  // nodes that a particle's row of A P reaches in a layer
 double stencil(const Counts& c) { return c.dim == 2 ? 25 : 125; }
 
-// P^T A P of all levels.
+double corners(const Counts& c) { return c.dim == 2 ? 4 : 8; }  // of a cell
+double node_floats(const Counts& c) { return c.first_nodes * weight; }
+
+// P^T A P of all levels. In 3-D the first one is made in four layers, each of which adds to two planes of the stencils.
 Traffic set_up_multigrid(const Counts& c) {
-  const double layers = c.dim == 2 ? 1 : 4, planes = c.dim == 2 ? 25 : 50;  // of a stencil, that one layer adds to
+  const double layers = c.dim == 2 ? 1 : 4, planes = c.dim == 2 ? 1 : 11;  // written, and read when added to
   const double seats =
-      places(c) + flags(c) + scalars(c) + (2 + c.dim) * floats(c);             // x surface diagonal; A, 1/A, place
-  const double find = c.cells * index + floats(c);                             // first; place
-  const double windows = float_rows(c) + (c.dim + 1 + window) * floats(c);     // rows; place, A; window written
-  const double collect = (window + c.dim) * floats(c) + c.cells * index +      // window, place; first;
-                         2 * planes * c.first_nodes * weight;                  // stencil read and written
+      places(c) + flags(c) + scalars(c) + (2 + c.dim) * floats(c);          // x surface diagonal; A, 1/A, place
+  const double find = c.cells * index + floats(c);                          // first; place
+  const double windows = float_rows(c) + (c.dim + 1 + window) * floats(c);  // rows; place, A; window written
+  const double cells = c.cells * index + (window + c.dim) * floats(c);      // first; window, place
+  const double parts = 2 * corners(c) * window * node_floats(c);            // of the cells, written and read
+  const double collect = planes * 25 * node_floats(c);
   const double coarsen = stencil(c) * weight * (3 * c.nodes - c.first_nodes);  // fine read, coarse written; smoother
-  return {seats + find + layers * (windows + collect) + coarsen,
-          float_rows(c) + (2 + c.dim + window) * floats(c) + stencil(c) * c.nodes * weight};
+  return {seats + find + layers * (windows + cells + parts) + collect + coarsen,
+          float_rows(c) + (2 + c.dim + window) * floats(c) + (corners(c) * window) * node_floats(c) +
+              stencil(c) * c.nodes * weight};
 }
 
 // One turn of conjugate gradients in float: three sums over rows and a V cycle.
 Traffic turn_with_multigrid(const Counts& c) {
-  const double first = 3 * floats(c);  // 1/A, z; t written
-  const double down =
-      (c.dim + 1) * floats(c) + c.cells * index + 3 * c.first_nodes * weight;  // place, t; first; b x relax
-  const double levels =
-      (2 * stencil(c) + 15) * c.nodes * weight;  // residual 3, restrict 4, prolong 4, smooth 4 vectors
-  const double up = (c.dim + 3) * floats(c) + c.first_nodes * weight;  // place, 1/A, z read and written; y
-  const double last = 4 * floats(c);                                   // 1/A, r, z; z' written
-  const double direction = 6 * floats(c);                              // z, A; d, q read and written
-  const double solution = 8 * floats(c);                               // d, q, 1/A; x, r read and written; z written
+  const double first = 3 * floats(c);                              // 1/A, z; t written
+  const double down = c.cells * index + (c.dim + 1) * floats(c) +  // first; place, t
+                      (2 * corners(c) + 3) * node_floats(c);       // parts written and read; relax, b, x
+  const double levels = (2 * stencil(c) + 15) * c.nodes * weight;  // two stencils; 3 + 4 + 4 + 4 vectors
+  const double up = (c.dim + 3) * floats(c) + node_floats(c);      // place, 1/A, z read and written; y
+  const double last = 4 * floats(c);                               // 1/A, r, z; z' written
+  const double direction = 6 * floats(c);                          // z, A; d, q read and written
+  const double solution = 8 * floats(c);                           // d, q, 1/A; x, r read and written; z written
   return {3 * float_rows(c) + first + down + levels + up + last + direction + solution,
-          float_rows(c) + (8 + c.dim) * floats(c) + (stencil(c) + 4) * c.nodes * weight};
+          float_rows(c) + (8 + c.dim) * floats(c) + corners(c) * node_floats(c) + (stencil(c) + 4) * c.nodes * weight};
 }
 
 // A round begins with r = b - A p in full precision; p + x ends it.
