@@ -6,7 +6,7 @@ namespace greenwater {
 
 void invert_in_place(double* A, int size) {
   if (size == 0) return;
-  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_dense, largest_dense>;
+  using Matrix = Eigen::MatrixXd;
   Eigen::Map<Matrix> there(A, size, size);
   const Matrix symmetric = 0.5 * (there + there.transpose());
   for (const double relative : {1e-5, 1e-2}) {
