@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 
 #include "core/kokkos.hpp"
 #include "core/real.hpp"
@@ -20,9 +19,6 @@ using OffsetField = Kokkos::View<std::int64_t*, Device>;  // where a row begins:
 using FlagField = Kokkos::View<std::uint8_t*, Device>;
 template <class Field>
 using Read = typename Field::const_type;  // what a kernel only reads
-
-template <class Field>
-using HostField = decltype(Kokkos::create_mirror_view(std::declval<const Field&>()));  // its copy for the host
 
 using Range = Kokkos::RangePolicy<Space, Kokkos::IndexType<int>>;
 

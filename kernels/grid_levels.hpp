@@ -62,8 +62,8 @@ class GridLevels {
   IndexField wanted_;
   FloatField inverse_;
   IndexField last_value_, last_position_;
-  HostField<IndexField> host_pack_, host_value_, host_position_;
-  HostField<FloatField> host_stencil_, host_inverse_;
+  IndexField::host_mirror_type host_pack_, host_value_, host_position_;
+  FloatField::host_mirror_type host_stencil_, host_inverse_;
   int small_ = 0;  // first of the levels that one launch does together
 };
 
