@@ -62,10 +62,10 @@ class GridLevels {
   IndexField wanted_;
   FloatField inverse_;
   IndexField last_value_, last_position_;
-  std::vector<IndexField::HostMirror> host_pack_;  // of each level that is small enough to be the last
-  std::vector<FloatField::HostMirror> host_stencil_;
-  IndexField::HostMirror host_value_, host_position_;
-  FloatField::HostMirror host_inverse_;
+  std::vector<IndexField::host_mirror_type> host_pack_;  // of each level that is small enough to be the last
+  std::vector<FloatField::host_mirror_type> host_stencil_;
+  IndexField::host_mirror_type host_value_, host_position_;
+  FloatField::host_mirror_type host_inverse_;
   int levels_ = 0;  // that there are; those of the stack are in use
   int small_ = 0;   // first of the levels that one launch does together
 };
