@@ -117,8 +117,11 @@ KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
 #ifdef GREENWATER_VECTORS
     if constexpr (sizeof(Mask) == 64 && sizeof(yes[0]) == 8) return _mm512_movepi64_mask((__m512i)yes);
 #endif
+    using T = std::remove_cv_t<std::remove_reference_t<decltype(Mask{}[0])>>;
+    T so[sizeof(Mask) / sizeof(T)];  // copied: g++ 12 with sanitizers reads a mask's lanes wrong
+    __builtin_memcpy(so, &yes, sizeof yes);
     unsigned bits = 0;
-    for (std::size_t l = 0; l < sizeof(Mask) / sizeof(yes[0]); ++l) bits |= (yes[l] ? 1u : 0u) << l;
+    for (unsigned l = 0; l < sizeof(Mask) / sizeof(T); ++l) bits |= (so[l] != 0 ? 1u : 0u) << l;
     return bits;
   }
 }
