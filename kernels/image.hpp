@@ -80,7 +80,6 @@ struct Image {
 /// What a pack of particles sees directly: neighbours as they are.
 template <int Dim>
 struct Itself {
-  static constexpr bool mirrored = false;
   static constexpr real share = 1;
   bool kept = false;  // the weights of the rows can be taken
   Pack weight_kept{};
@@ -89,16 +88,15 @@ struct Itself {
   KOKKOS_INLINE_FUNCTION Pack weight(const Weight& w, const Pack& r2) const { return kept ? weight_kept : w(sqrt(r2)); }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> velocity(const Vec<Dim, Pack>& u) const { return u; }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> sticking_velocity(const Vec<Dim, Pack>& u) const { return u; }
-  template <class X>
-  KOKKOS_INLINE_FUNCTION real pressure_offset(const Vec<Dim, Pack>&, const X&) const {
-    return 0;
+  template <class Drive, class X>
+  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive&, const X&, const IndexPack&) const {
+    return Pack{};
   }
 };
 
 /// What a pack of particles sees by way of walls; some lanes may see nothing, and have no share.
 template <int Dim>
 struct Images {
-  static constexpr bool mirrored = true;
   Image<Dim> image[pack_lanes];
   Pack share{};       // with which each counts in every sum
   bool kept = false;  // weights are rounded like those of the rows: a mirror image balances its original
@@ -117,10 +115,13 @@ struct Images {
     return mirrored_velocity<true>(u);
   }
 
-  /// What the pressures of the images are above those of their particles at x, per density. It belongs to gradients,
-  /// loads and probes; never to the pressure rows, whose source carries gravity and the wall's motion already.
-  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Vec<Dim, Pack>& g,
-                                              const Vec<Dim, Lanes<coord, pack_lanes>>& x) const {
+  /// What the pressures of the images are above those of their particles j, per density, given what drives particles
+  /// and where they are. It belongs to gradients, loads and probes; never to the pressure rows, whose source carries
+  /// gravity and the wall's motion already.
+  template <class Drive, class X>
+  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive& drive, const X& all_x, const IndexPack& j) const {
+    const auto g = drive.at(j);
+    const auto x = gather_pack<Dim>(all_x, j);
     Pack offset{};
     for (int l = 0; l < pack_lanes; ++l)
       if (image[l].mirror)

@@ -184,9 +184,7 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2));
-          Pack pj = gather_pack(p, j);
-          if constexpr (std::decay_t<decltype(image)>::mirrored)
-            pj += rho * image.pressure_offset(drive.at(j), gather_pack<Dim>(x, j));
+          const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, x, j);
           p_min = select(weight > 0, smaller(p_min, pj), p_min);
           const auto f = along(Vec<Dim, Pack>{}, weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
           sum_pf = along(sum_pf, pj, f);
