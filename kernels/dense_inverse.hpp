@@ -3,7 +3,7 @@
 
 namespace greenwater {
 
-constexpr int largest_dense = 64;
+constexpr int largest_dense = 128;
 
 /// The inverse of the symmetric matrix A(row, column) of `size` rows, which should be positive definite, in its place.
 /// What little is added to its diagonal (1e-5 of it) keeps rounding from making it singular where only compressibility

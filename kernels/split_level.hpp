@@ -28,14 +28,13 @@ struct Splits {
 
   float* to_nodes = nullptr;     // (number, entry)  rows of A that belong to splits: entries of nodes, and
   float* to_splits = nullptr;    // (number, entry)  of splits
-  float* relax = nullptr;        // (number)         as of a level
+  float* relax = nullptr;        // (number)         what the smoother multiplies residuals with: the split's side, and
+  float* relax_rest = nullptr;   // (number)         the rest of its node
   float* from_nodes = nullptr;   // (number, child)  what a split's function is made of on the finer level: nodes, and
   float* from_splits = nullptr;  // (number, child)  splits
   float* b = nullptr;            // (number) right side
   float* e = nullptr;            // (number) solution
   float* left = nullptr;         // (number) residual
-  float* step = nullptr;         // (number) what is added to the solution, and
-  float* next = nullptr;         // (number) its next iterate
 };
 
 constexpr int children(int dim) { return dim == 2 ? 9 : 27; }
@@ -66,24 +65,17 @@ KOKKOS_INLINE_FUNCTION void for_stencil(const Level& level, F f) {
       for (int dx = -reach; dx <= reach; ++dx, ++entry) f(entry, dz * level.layer + dy * level.row + dx);
 }
 
-/// A x of a split, nodes' part.
+/// left = b - A x - A e of a split.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION float nodes_product(const Level& level, const Splits& s, const float* x, int number) {
-  const float* a = s.to_nodes + number * stencil_size(Dim);
-  const float* from = x + s.at[number];
+KOKKOS_INLINE_FUNCTION void split_residual(const Level& level, const Splits& s, int number) {
+  const float* to_nodes = s.to_nodes + number * stencil_size(Dim);
+  const float* to_splits = s.to_splits + number * stencil_size(Dim);
+  const int at = s.at[number];
   float sum = 0;
-  for_stencil<Dim>(level, [&](const int entry, const int way) { sum += a[entry] * from[way]; });
-  return sum;
-}
-
-/// A e of a split, splits' part.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION float splits_product(const Level& level, const Splits& s, const float* e, int number) {
-  const float* a = s.to_splits + number * stencil_size(Dim);
-  const int* from = s.number + s.at[number];
-  float sum = 0;
-  for_stencil<Dim>(level, [&](const int entry, const int way) { sum += a[entry] * e[from[way]]; });
-  return sum;
+  for_stencil<Dim>(level, [&](const int entry, const int way) {
+    sum += to_nodes[entry] * level.x[at + way] + to_splits[entry] * s.e[s.number[at + way]];
+  });
+  s.left[number] = s.b[number] - sum;
 }
 
 /// A e of a node.
@@ -96,6 +88,38 @@ KOKKOS_INLINE_FUNCTION float product_at_node(const Level& level, const Splits& s
     if (number > 0) sum += s.to_nodes[number * size + size - 1 - entry] * s.e[number];
   });
   return sum;
+}
+
+/// The first smoothing from zero at a node that is split: each side of it has its own.
+KOKKOS_INLINE_FUNCTION void smooth_first(const Level& level, const Splits& s, int number, int value) {
+  if (!(s.relax[number] > 0)) return;
+  const float rest = s.relax_rest[number] * (level.b[value] - s.b[number]);
+  level.x[s.at[number]] = rest;
+  s.e[number] = s.relax[number] * s.b[number] - rest;
+}
+
+/// y of a node less what splits make of its residual.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void mend_residual(const Level& level, const Splits& s, int position) {
+  if (value_of(level, node_at<Dim>(level, position)) >= node_lanes)
+    level.y[position] -= product_at_node<Dim>(level, s, position);
+}
+
+/// The same of a node that was smoothed.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void mend_smoothed(const Level& level, const Splits& s, int position) {
+  const int value = value_of(level, node_at<Dim>(level, position));
+  if (value >= node_lanes) level.y[position] -= level.relax[value] * product_at_node<Dim>(level, s, position);
+}
+
+/// Smoothing of a node that is split, from its residual and that of the split. Its y is that of a smoothed node.
+KOKKOS_INLINE_FUNCTION void smooth_split(const Level& level, const Splits& s, int number, int value) {
+  if (!(s.relax[number] > 0)) return;
+  const int at = s.at[number];
+  const float residual = (level.y[at] - level.x[at]) / level.relax[value];
+  const float rest = s.relax_rest[number] * (residual - s.left[number]);
+  level.y[at] = level.x[at] + rest;
+  s.e[number] += s.relax[number] * s.left[number] - rest;
 }
 
 /// Calls f(child, position) for the finer nodes that a node's function is made of.

@@ -3,8 +3,12 @@
 #include <algorithm>
 
 #include "core/check.hpp"
+#include "kernels/dense_inverse.hpp"
 
 namespace greenwater {
+
+static_assert(2 * coarsest_nodes <= largest_dense);  // each of the last level's nodes may be split
+
 namespace {
 
 using Team = Kokkos::TeamPolicy<Space>;
@@ -99,6 +103,24 @@ KOKKOS_INLINE_FUNCTION void unmark(const Sides& s, const Node& n) {
   });
 }
 
+/// The split is to stand for the side that has less of the node: the other is nearly the whole.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void mark_lesser(const Sides& s, const Node& n) {
+  float marked = 0, all = 0;
+  for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
+    const float share = share_of<Dim>(s.seats, n, p);
+    all += share;
+    if (s.side(p) >> corner & 1) marked += share;
+  });
+  if (2 * marked <= all) return;
+  for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
+    if (s.side(p) >> corner & 1)
+      Kokkos::atomic_fetch_and(&s.side(p), ~(1 << corner));
+    else
+      Kokkos::atomic_fetch_or(&s.side(p), 1 << corner);
+  });
+}
+
 void clear(const IndexField& side, int count) {
   Kokkos::parallel_for(
       "greenwater::split_clear_sides", Range(0, count), KOKKOS_LAMBDA(const int p) { side(p) = 0; });
@@ -119,6 +141,7 @@ void find_sides(const Sides& sides, const Level& level, const Splits& splits) {
           done = marked * smallest_part >= active;
           if (marked == active || !done) unmark<Dim>(sides, n);
         });
+        mark_lesser<Dim>(sides, n);
       });
 }
 
@@ -159,16 +182,28 @@ void make_first_rows(const Sides& sides, const Level& level, const Splits& split
       });
 }
 
+// As that of the nodes, for both sides of each node that is split. The two have nothing to do with each other.
 template <int Dim>
-void weigh_smoother(const Splits& s) {
+void weigh_smoother(const Level& level, const Splits& s) {
   Kokkos::parallel_for(
       "greenwater::split_weigh_smoother", Range(1, s.count + 1), KOKKOS_LAMBDA(const int number) {
-        constexpr int size = stencil_size(Dim);
-        const float* a = s.to_splits + number * size;
-        float sum = 0;
-        for (int e = 0; e < size; ++e) sum += fabs(a[e]);
-        const float own = a[size / 2];
-        s.relax[number] = own > 0 ? 1.9f / (own + sum) : 0.0f;
+        constexpr int size = stencil_size(Dim), middle = size / 2;
+        const int at = s.at[number], value = value_of(level, node_at<Dim>(level, at));
+        const float* whole = level.stencil + value / node_lanes * size * node_lanes + value % node_lanes;
+        const float* to_nodes = s.to_nodes + number * size;
+        const float* to_splits = s.to_splits + number * size;
+        float of_split = 0, of_rest = 0;
+        for_stencil<Dim>(level, [&](const int entry, const int way) {
+          const int other = s.number[at + way];
+          const float back = other > 0 ? s.to_nodes[other * size + size - 1 - entry] : 0.0f;
+          of_split += fabs(to_nodes[entry] - to_splits[entry]) + fabs(to_splits[entry]);
+          of_rest += fabs(whole[entry * node_lanes] - to_nodes[entry] - back + to_splits[entry]) +
+                     fabs(back - to_splits[entry]);
+        });
+        const float own = to_splits[middle], rest = whole[middle * node_lanes] - 2 * to_nodes[middle] + own;
+        const bool split = own > 0 && rest > 0;
+        s.relax[number] = split ? 1.9f / (own + of_split) : 0.0f;
+        s.relax_rest[number] = split ? 1.9f / (rest + of_rest) : 0.0f;
       });
 }
 
@@ -252,13 +287,15 @@ KOKKOS_INLINE_FUNCTION std::uint64_t one_side(const Patch<Dim>& patch) {
     if (!patch.split(child) || tried >> (2 * child + 1) & 1) continue;
     const auto found = connected_with(patch, 2 * child + 1);
     float weight = 0;
-    bool rest = false;
+    std::uint64_t rest = 0;
     for (int u = 0; u < Patch<Dim>::count; ++u) {
-      if (found >> u & 1) weight += patch.weight[u];
-      rest = rest || (patch.weight[u] > 0 && !(found >> u & 1));
+      if (found >> u & 1)
+        weight += patch.weight[u];
+      else if (patch.weight[u] > 0)
+        rest |= std::uint64_t(1) << u;
     }
-    if (!rest) return 0;
-    if (weight * smallest_part >= all) return found;
+    if (rest == 0) return 0;
+    if (weight * smallest_part >= all) return 2 * weight <= all ? found : rest;
     tried |= found;
   }
   return 0;
@@ -378,92 +415,77 @@ KOKKOS_INLINE_FUNCTION void for_each(const Member& team, int begin, int end, con
   team.team_barrier();
 }
 
-// Three sweeps of the splits' own part of the matrix, from `left` to `step`.
+/// Values at the nodes of the last level and of its splits from their right sides.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void sweep(const Member& team, const Level& level, const Splits& s) {
-  const int end = s.count + 1;
-  for_each(team, 1, end, [&](const int m) { s.step[m] = s.relax[m] * s.left[m]; });
-  for (int turn = 0; turn < 2; ++turn) {
-    const float* old = turn == 0 ? s.step : s.next;
-    float* to = turn == 0 ? s.next : s.step;
-    for_each(team, 1, end, [&](const int m) {
-      to[m] = old[m] + s.relax[m] * (s.left[m] - splits_product<Dim>(level, s, old, m));
-    });
-  }
-}
-
-// The splits' values from zero, and what is left of their right side.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void smooth_down(const Member& team, const Level& level, const Splits& s, const float* x) {
-  const int end = s.count + 1;
-  for_each(team, 1, end,
-           [&](const int m) { s.left[m] = s.b[m] - (x ? nodes_product<Dim>(level, s, x, m) : 0.0f); });
-  sweep<Dim>(team, level, s);
-  for_each(team, 1, end, [&](const int m) {
-    s.e[m] = s.step[m];
-    s.left[m] -= splits_product<Dim>(level, s, s.step, m);
-  });
-}
-
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void smooth_up(const Member& team, const Level& level, const Splits& s, const float* x) {
-  const int end = s.count + 1;
-  for_each(team, 1, end, [&](const int m) {
-    s.left[m] = s.b[m] - nodes_product<Dim>(level, s, x, m) - splits_product<Dim>(level, s, s.e, m);
-  });
-  sweep<Dim>(team, level, s);
-  for_each(team, 1, end, [&](const int m) { s.e[m] += s.step[m]; });
-}
-
-/// y of a node as the splits change its residual, or (smoothed) its value.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void mend_residual(const Level& level, const Splits& s, int item) {
-  const int position = s.near_at[item], value = value_of(level, node_at<Dim>(level, position));
-  if (value >= node_lanes) level.y[position] -= product_at_node<Dim>(level, s, position);
-}
-
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void mend_smoothed(const Level& level, const Splits& s, int item) {
-  const int position = s.near_at[item], value = value_of(level, node_at<Dim>(level, position));
-  if (value >= node_lanes) level.y[position] -= level.relax[value] * product_at_node<Dim>(level, s, position);
-}
-
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void mend_right_side(const Level& level, const Splits& s, int item) {
-  const int position = s.near_at[item], value = value_of(level, node_at<Dim>(level, position));
-  if (value >= node_lanes) level.b[value] -= product_at_node<Dim>(level, s, position);
-}
-
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& stack, const Splits& s) {
+KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& stack, const SplitStack& splits) {
   const Level& last = stack.level[stack.count - 1];
-  smooth_down<Dim>(team, last, s, nullptr);
-  for_each(team, 0, s.near, [&](const int item) { mend_right_side<Dim>(last, s, item); });
-  for_each(team, 0, stack.unknowns, [&](const int row) {
+  const Splits& s = splits.level[stack.count - 1];
+  const int nodes = stack.unknowns, count = nodes + s.count;
+  for_each(team, 0, count, [&](const int row) {
+    const float* inverse = splits.inverse + row * count;
     float sum = 0;
-    for (int c = 0; c < stack.unknowns; ++c) sum += stack.inverse[row * stack.unknowns + c] * last.b[stack.value[c]];
-    last.y[stack.position[row]] = sum;
+    for (int c = 0; c < nodes; ++c) sum += inverse[c] * last.b[stack.value[c]];
+    for (int c = nodes; c < count; ++c) sum += inverse[c] * s.b[c - nodes + 1];
+    if (row < nodes)
+      last.y[stack.position[row]] = sum;
+    else
+      s.e[row - nodes + 1] = sum;
   });
-  smooth_up<Dim>(team, last, s, last.y);
+}
+
+// The matrix of the last level with its splits, on the device; splits that are none have a one.
+template <int Dim>
+void fill_last(const LevelStack& stack, const SplitStack& splits, const FloatField& matrix) {
+  const Level last = stack.level[stack.count - 1];
+  const Splits s = splits.level[stack.count - 1];
+  const int nodes = stack.unknowns, count = nodes + s.count;
+  const int* position = stack.position;
+  Kokkos::parallel_for(
+      "greenwater::split_last_matrix", Range(0, count * count), KOKKOS_LAMBDA(const int place) {
+        constexpr int size = stencil_size(Dim);
+        const int row = place / count, column = place % count, m = row - nodes + 1, n = column - nodes + 1;
+        const Node a = node_at<Dim>(last, m > 0 ? s.at[m] : position[row]);
+        const Node b = node_at<Dim>(last, n > 0 ? s.at[n] : position[column]);
+        const int dx = b.i - a.i + reach, dy = b.j - a.j + reach, dz = Dim == 3 ? b.k - a.k + reach : 0;
+        float value = 0;
+        if (dx >= 0 && dx < across && dy >= 0 && dy < across && dz >= 0 && dz < across) {
+          const int entry = (dz * across + dy) * across + dx, at = value_of(last, a);
+          if (m > 0)
+            value = n > 0 ? s.to_splits[m * size + entry] : s.to_nodes[m * size + entry];
+          else if (n > 0)
+            value = s.to_nodes[n * size + size - 1 - entry];
+          else
+            value = last.stencil[(at / node_lanes * size + entry) * node_lanes + at % node_lanes];
+        }
+        matrix(place) = row == column && m > 0 && !(s.relax[m] > 0) ? 1.0f : value;
+      });
+}
+
+template <int Dim>
+KOKKOS_INLINE_FUNCTION int value_of_split(const Level& level, const Splits& s, int number) {
+  return value_of(level, node_at<Dim>(level, s.at[number]));
 }
 
 template <int Dim>
 void launch_down(const Level& fine, const Splits& from, const Level& coarse, const Splits& s) {
   Kokkos::parallel_for(
-      "greenwater::split_smooth_down", Team(1, Kokkos::AUTO),
-      KOKKOS_LAMBDA(const Member& team) { smooth_down<Dim>(team, fine, from, fine.x); });
+      "greenwater::split_smooth_first", Range(1, from.count + 1),
+      KOKKOS_LAMBDA(const int m) { smooth_first(fine, from, m, value_of_split<Dim>(fine, from, m)); });
   Kokkos::parallel_for(
-      "greenwater::split_residual", Range(0, items(fine)),
+      "greenwater::split_residual_of_nodes", Range(0, items(fine)),
       KOKKOS_LAMBDA(const int number) { residual<Dim>(fine, number); });
   Kokkos::parallel_for(
       "greenwater::split_mend_residual", Range(0, from.near),
-      KOKKOS_LAMBDA(const int item) { mend_residual<Dim>(fine, from, item); });
+      KOKKOS_LAMBDA(const int k) { mend_residual<Dim>(fine, from, from.near_at[k]); });
+  Kokkos::parallel_for(
+      "greenwater::split_residual", Range(1, from.count + 1),
+      KOKKOS_LAMBDA(const int m) { split_residual<Dim>(fine, from, m); });
   Kokkos::parallel_for(
       "greenwater::split_restrict_nodes", Range(0, items(coarse)),
       KOKKOS_LAMBDA(const int number) { restrict_from<Dim>(fine, coarse, number); });
   Kokkos::parallel_for(
       "greenwater::split_restrict", Range(1, s.count + 1),
-      KOKKOS_LAMBDA(const int number) { restrict_split<Dim>(fine, from, coarse, s, number); });
+      KOKKOS_LAMBDA(const int m) { restrict_split<Dim>(fine, from, coarse, s, m); });
 }
 
 template <int Dim>
@@ -473,16 +495,43 @@ void launch_up(const Level& fine, const Splits& to, const Level& coarse, const S
       KOKKOS_LAMBDA(const int number) { prolong_to<Dim>(fine, coarse, number); });
   Kokkos::parallel_for(
       "greenwater::split_prolong", Range(0, to.under),
-      KOKKOS_LAMBDA(const int item) { prolong_splits<Dim>(fine, to, coarse, s, to.under_at[item]); });
+      KOKKOS_LAMBDA(const int k) { prolong_splits<Dim>(fine, to, coarse, s, to.under_at[k]); });
   Kokkos::parallel_for(
-      "greenwater::split_smooth_up", Team(1, Kokkos::AUTO),
-      KOKKOS_LAMBDA(const Member& team) { smooth_up<Dim>(team, fine, to, fine.x); });
+      "greenwater::split_residual", Range(1, to.count + 1),
+      KOKKOS_LAMBDA(const int m) { split_residual<Dim>(fine, to, m); });
   Kokkos::parallel_for(
       "greenwater::split_smooth_nodes", Range(0, items(fine)),
       KOKKOS_LAMBDA(const int number) { smooth<Dim>(fine, number); });
   Kokkos::parallel_for(
       "greenwater::split_mend_smoothed", Range(0, to.near),
-      KOKKOS_LAMBDA(const int item) { mend_smoothed<Dim>(fine, to, item); });
+      KOKKOS_LAMBDA(const int k) { mend_smoothed<Dim>(fine, to, to.near_at[k]); });
+  Kokkos::parallel_for(
+      "greenwater::split_smooth", Range(1, to.count + 1),
+      KOKKOS_LAMBDA(const int m) { smooth_split(fine, to, m, value_of_split<Dim>(fine, to, m)); });
+}
+
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void go_down(const Member& team, const Level& fine, const Splits& from, const Level& coarse,
+                                    const Splits& s) {
+  for_each(team, 1, from.count + 1,
+           [&](const int m) { smooth_first(fine, from, m, value_of_split<Dim>(fine, from, m)); });
+  for_each(team, 0, items(fine), [&](const int number) { residual<Dim>(fine, number); });
+  for_each(team, 0, from.near, [&](const int k) { mend_residual<Dim>(fine, from, from.near_at[k]); });
+  for_each(team, 1, from.count + 1, [&](const int m) { split_residual<Dim>(fine, from, m); });
+  for_each(team, 0, items(coarse), [&](const int number) { restrict_from<Dim>(fine, coarse, number); });
+  for_each(team, 1, s.count + 1, [&](const int m) { restrict_split<Dim>(fine, from, coarse, s, m); });
+}
+
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void go_up(const Member& team, const Level& fine, const Splits& to, const Level& coarse,
+                                  const Splits& s) {
+  for_each(team, 0, items(fine), [&](const int number) { prolong_to<Dim>(fine, coarse, number); });
+  for_each(team, 0, to.under, [&](const int k) { prolong_splits<Dim>(fine, to, coarse, s, to.under_at[k]); });
+  for_each(team, 1, to.count + 1, [&](const int m) { split_residual<Dim>(fine, to, m); });
+  for_each(team, 0, items(fine), [&](const int number) { smooth<Dim>(fine, number); });
+  for_each(team, 0, to.near, [&](const int k) { mend_smoothed<Dim>(fine, to, to.near_at[k]); });
+  for_each(team, 1, to.count + 1,
+           [&](const int m) { smooth_split(fine, to, m, value_of_split<Dim>(fine, to, m)); });
 }
 
 template <int Dim>
@@ -490,26 +539,11 @@ void launch_small_levels(const LevelStack& stack, const SplitStack& splits, int 
   Kokkos::parallel_for(
       "greenwater::split_small_levels", Team(1, Kokkos::AUTO), KOKKOS_LAMBDA(const Member& team) {
         const int last = stack.count - 1;
-        for (int l = from; l < last; ++l) {
-          const Level &fine = stack.level[l], &coarse = stack.level[l + 1];
-          const Splits &f = splits.level[l], &c = splits.level[l + 1];
-          smooth_down<Dim>(team, fine, f, fine.x);
-          for_each(team, 0, items(fine), [&](const int number) { residual<Dim>(fine, number); });
-          for_each(team, 0, f.near, [&](const int item) { mend_residual<Dim>(fine, f, item); });
-          for_each(team, 0, items(coarse), [&](const int number) { restrict_from<Dim>(fine, coarse, number); });
-          for_each(team, 1, c.count + 1, [&](const int number) { restrict_split<Dim>(fine, f, coarse, c, number); });
-        }
-        solve_last<Dim>(team, stack, splits.level[last]);
-        for (int l = last - 1; l >= from; --l) {
-          const Level &fine = stack.level[l], &coarse = stack.level[l + 1];
-          const Splits &f = splits.level[l], &c = splits.level[l + 1];
-          for_each(team, 0, items(fine), [&](const int number) { prolong_to<Dim>(fine, coarse, number); });
-          for_each(team, 0, f.under,
-                   [&](const int item) { prolong_splits<Dim>(fine, f, coarse, c, f.under_at[item]); });
-          smooth_up<Dim>(team, fine, f, fine.x);
-          for_each(team, 0, items(fine), [&](const int number) { smooth<Dim>(fine, number); });
-          for_each(team, 0, f.near, [&](const int item) { mend_smoothed<Dim>(fine, f, item); });
-        }
+        for (int l = from; l < last; ++l)
+          go_down<Dim>(team, stack.level[l], splits.level[l], stack.level[l + 1], splits.level[l + 1]);
+        solve_last<Dim>(team, stack, splits);
+        for (int l = last - 1; l >= from; --l)
+          go_up<Dim>(team, stack.level[l], splits.level[l], stack.level[l + 1], splits.level[l + 1]);
       });
 }
 
@@ -526,13 +560,13 @@ template <int Dim>
 void make_rows(const Sides& sides, const LevelStack& stack, const SplitStack& splits) {
   find_sides<Dim>(sides, stack.level[0], splits.level[0]);
   make_first_rows<Dim>(sides, stack.level[0], splits.level[0]);
-  weigh_smoother<Dim>(splits.level[0]);
+  weigh_smoother<Dim>(stack.level[0], splits.level[0]);
   for (int l = 1; l < stack.count; ++l) {
     const Level &fine = stack.level[l - 1], &coarse = stack.level[l];
     const Splits &from = splits.level[l - 1], &s = splits.level[l];
     find_coarse_sides<Dim>(fine, from, coarse, s);
     make_coarse_rows<Dim>(fine, from, coarse, s);
-    weigh_smoother<Dim>(s);
+    weigh_smoother<Dim>(coarse, s);
   }
 }
 
@@ -623,11 +657,10 @@ void SplitNodes::place(int l, const Level& level, const Nodes& nodes, int dim) {
   give(f.from_nodes, s.from_nodes, "greenwater::split_from_nodes", children(dim));
   give(f.from_splits, s.from_splits, "greenwater::split_from_splits", children(dim));
   give(f.relax, s.relax, "greenwater::split_relax", 1);
+  give(f.relax_rest, s.relax_rest, "greenwater::split_relax_rest", 1);
   give(f.b, s.b, "greenwater::split_b", 1);
   give(f.e, s.e, "greenwater::split_e", 1);
   give(f.left, s.left, "greenwater::split_left", 1);
-  give(f.step, s.step, "greenwater::split_step", 1);
-  give(f.next, s.next, "greenwater::split_next", 1);
   set_numbers(s, true);
 }
 
@@ -665,6 +698,7 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
   if (!same_grid) {
     fields_.clear();
     stack_ = {};
+    inverse_ = {};
     nodes_.clear();
   }
   if (nodes.empty()) {
@@ -682,6 +716,22 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
   clear(side_, system.count);
   const Sides sides = {seats, system.rows, system.diagonal, side_};
   dim_ == 2 ? make_rows<2>(sides, levels.stack(), stack_) : make_rows<3>(sides, levels.stack(), stack_);
+  invert_last(levels.stack());
+}
+
+void SplitNodes::invert_last(const LevelStack& stack) {
+  const int count = stack.unknowns + stack_.level[stack.count - 1].count;
+  if (inverse_.extent(0) == 0) {
+    inverse_ = uncleared<FloatField>("greenwater::split_inverse", largest_dense * largest_dense);
+    host_inverse_ = Kokkos::create_mirror_view(inverse_);
+    stack_.inverse = inverse_.data();
+  }
+  dim_ == 2 ? fill_last<2>(stack, stack_, inverse_) : fill_last<3>(stack, stack_, inverse_);
+  Kokkos::deep_copy(host_inverse_, inverse_);
+  dense_.assign(host_inverse_.data(), host_inverse_.data() + count * count);
+  invert_in_place(dense_.data(), count);
+  std::copy(dense_.begin(), dense_.end(), host_inverse_.data());
+  Kokkos::deep_copy(inverse_, host_inverse_);
 }
 
 void SplitNodes::restrict_particles(const Seats& seats, const GridLevels& levels, const FloatField& t) const {

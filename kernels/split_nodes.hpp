@@ -12,6 +12,7 @@ namespace greenwater {
 /// Splits as kernels take them, by value.
 struct SplitStack {
   Splits level[most_levels];
+  const float* inverse = nullptr;  // (row, column) of the last level's matrix: nodes, then splits
 };
 
 class SplitNodes {
@@ -37,10 +38,11 @@ class SplitNodes {
   struct Fields {
     IndexField number, at, near_at, under_at;
     FloatField to_nodes, to_splits, from_nodes, from_splits;
-    FloatField relax, b, e, left, step, next;
+    FloatField relax, relax_rest, b, e, left;
   };
 
   void arrange(const GridLevels& levels);
+  void invert_last(const LevelStack& stack);
   void place(int l, const Level& level, const Nodes& nodes, int dim);
 
   CutCells cut_;
@@ -52,6 +54,9 @@ class SplitNodes {
   IndexField side_;           // (particle) bit c: it is on the split's side of corner c of its cell
   IndexField cells_;          // around the nodes
   int cells_count_ = 0;
+  FloatField inverse_;
+  FloatField::HostMirror host_inverse_;
+  std::vector<double> dense_;
 };
 
 }  // namespace greenwater
