@@ -65,14 +65,13 @@ KOKKOS_INLINE_FUNCTION float share_of(const Seats& seats, const Node& n, int p) 
   return share;
 }
 
-constexpr int seen = 8;          // bits of a particle's sides from here on: it belongs to a cluster that is too small
-constexpr int smallest_part = 8; // a side has at least one of so many particles
+constexpr int seen = 8;  // bits of a particle's sides from here on: it belongs to a cluster that is not the largest
 
-/// Marks all particles around a node that are connected with `from`; returns how many.
+/// Marks all particles around a node that are connected with `from`; returns what they have of the node.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION int mark_connected(const Sides& s, const Node& n, int from, int corner_of_from) {
+KOKKOS_INLINE_FUNCTION float mark_connected(const Sides& s, const Node& n, int from, int corner_of_from) {
   Kokkos::atomic_fetch_or(&s.side(from), 1 << corner_of_from);
-  int marked = 1;
+  float share = share_of<Dim>(s.seats, n, from);
   for (bool more = true; more;) {
     more = false;
     for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
@@ -84,16 +83,27 @@ KOKKOS_INLINE_FUNCTION int mark_connected(const Sides& s, const Node& n, int fro
         const int j = s.rows.index(place), other = corner_of<Dim>(s.seats, n, j);
         if (other < 0 || !(s.side(j) >> other & 1)) continue;
         Kokkos::atomic_fetch_or(&s.side(p), 1 << corner);
-        ++marked;
+        share += share_of<Dim>(s.seats, n, p);
         more = true;
         return;
       }
     });
   }
-  return marked;
+  return share;
 }
 
-/// Takes the marks away again, for particles of a cluster too small.
+/// Marks those that are not marked instead.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION void mark_rest(const Sides& s, const Node& n) {
+  for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
+    if (s.side(p) >> corner & 1)
+      Kokkos::atomic_fetch_and(&s.side(p), ~(1 << corner));
+    else
+      Kokkos::atomic_fetch_or(&s.side(p), 1 << corner);
+  });
+}
+
+/// Takes the marks away again.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION void unmark(const Sides& s, const Node& n) {
   for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
@@ -103,45 +113,26 @@ KOKKOS_INLINE_FUNCTION void unmark(const Sides& s, const Node& n) {
   });
 }
 
-/// The split is to stand for the side that has less of the node: the other is nearly the whole.
-template <int Dim>
-KOKKOS_INLINE_FUNCTION void mark_lesser(const Sides& s, const Node& n) {
-  float marked = 0, all = 0;
-  for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
-    const float share = share_of<Dim>(s.seats, n, p);
-    all += share;
-    if (s.side(p) >> corner & 1) marked += share;
-  });
-  if (2 * marked <= all) return;
-  for_particles<Dim>(s.seats, n, [&](const int p, const int corner) {
-    if (s.side(p) >> corner & 1)
-      Kokkos::atomic_fetch_and(&s.side(p), ~(1 << corner));
-    else
-      Kokkos::atomic_fetch_or(&s.side(p), 1 << corner);
-  });
-}
-
 void clear(const IndexField& side, int count) {
   Kokkos::parallel_for(
       "greenwater::split_clear_sides", Range(0, count), KOKKOS_LAMBDA(const int p) { side(p) = 0; });
 }
 
-// Marks the particles on one side of each node that has two.
+// Where the particles around a node are not all connected, marks those that are not in the cluster that has at least half
+// of the node: the split stands for them, so that it is the smaller part.
 template <int Dim>
 void find_sides(const Sides& sides, const Level& level, const Splits& splits) {
   Kokkos::parallel_for(
       "greenwater::split_find_sides", Range(1, splits.count + 1), KOKKOS_LAMBDA(const int number) {
         const Node n = node_at<Dim>(level, splits.at[number]);
-        int active = 0;
-        for_particles<Dim>(sides.seats, n, [&](const int, const int) { ++active; });
+        float all = 0;
+        for_particles<Dim>(sides.seats, n, [&](const int p, const int) { all += share_of<Dim>(sides.seats, n, p); });
         bool done = false;
         for_particles<Dim>(sides.seats, n, [&](const int p, const int corner) {
           if (done || sides.side(p) >> (corner + seen) & 1) return;
-          const int marked = mark_connected<Dim>(sides, n, p, corner);
-          done = marked * smallest_part >= active;
-          if (marked == active || !done) unmark<Dim>(sides, n);
+          done = 2 * mark_connected<Dim>(sides, n, p, corner) >= all;
+          done ? mark_rest<Dim>(sides, n) : unmark<Dim>(sides, n);
         });
-        mark_lesser<Dim>(sides, n);
       });
 }
 
@@ -278,25 +269,24 @@ KOKKOS_INLINE_FUNCTION std::uint64_t connected_with(const Patch<Dim>& patch, int
   return found;
 }
 
+/// The halves that are not connected with the largest cluster of them, which has at least half of the weight.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION std::uint64_t one_side(const Patch<Dim>& patch) {
-  std::uint64_t tried = 0;
   float all = 0;
-  for (int u = 0; u < Patch<Dim>::count; ++u) all += patch.weight[u];
-  for (int child = 0; child < children(Dim); ++child) {
-    if (!patch.split(child) || tried >> (2 * child + 1) & 1) continue;
-    const auto found = connected_with(patch, 2 * child + 1);
+  std::uint64_t left = 0;
+  for (int u = 0; u < Patch<Dim>::count; ++u) {
+    all += patch.weight[u];
+    if (patch.weight[u] > 0) left |= std::uint64_t(1) << u;
+  }
+  const auto there = left;
+  for (int from = 0; from < Patch<Dim>::count; ++from) {
+    if (!(left >> from & 1)) continue;
+    const auto found = connected_with(patch, from);
     float weight = 0;
-    std::uint64_t rest = 0;
-    for (int u = 0; u < Patch<Dim>::count; ++u) {
-      if (found >> u & 1)
-        weight += patch.weight[u];
-      else if (patch.weight[u] > 0)
-        rest |= std::uint64_t(1) << u;
-    }
-    if (rest == 0) return 0;
-    if (weight * smallest_part >= all) return 2 * weight <= all ? found : rest;
-    tried |= found;
+    for (int u = 0; u < Patch<Dim>::count; ++u)
+      if (found >> u & 1) weight += patch.weight[u];
+    if (2 * weight >= all) return there & ~found;
+    left &= ~found;
   }
   return 0;
 }
