@@ -72,7 +72,7 @@ std::string version_text() {
 
 /// CLI11 only says that a subcommand is missing.
 void require_known_verb(int argc, const char* const* argv) {
-  const std::vector<std::string> verbs{"run", "check", "info"};
+  const std::vector<std::string> verbs{"run", "check", "info", "bench"};
   if (argc < 2 || argv[1][0] == '-') return;
   const std::string verb = argv[1];
   if (std::find(verbs.begin(), verbs.end(), verb) != verbs.end()) return;
@@ -90,6 +90,7 @@ Command put_together(Typed& typed, const CLI::App& app) {
   if (app.got_subcommand("run")) command.verb = run.dry_run ? Command::Verb::check : Command::Verb::run;
   if (app.got_subcommand("check")) command.verb = Command::Verb::check;
   if (app.got_subcommand("info")) command.verb = Command::Verb::info;
+  if (app.got_subcommand("bench")) command.verb = Command::Verb::bench;
   for (const std::string& set : typed.sets) run.case_options.push_back(set_option(set));
   if (!typed.until.empty()) run.case_options.push_back({"--until " + typed.until, "time.end", typed.until});
   if (!typed.output.empty()) run.output = typed.output;
@@ -104,6 +105,7 @@ Command put_together(Typed& typed, const CLI::App& app) {
 Command parse_command_line(int argc, const char* const* argv) {
   Typed typed;
   typed.command.run.command_line.assign(argv, argv + argc);
+  typed.command.bench.command_line = typed.command.run.command_line;
   CLI::App app{"Greenwater: free-surface flow with moving particles (MPS)", "greenwater"};
   app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
@@ -111,6 +113,7 @@ Command parse_command_line(int argc, const char* const* argv) {
   add_run(app, typed);
   add_check(app, typed);
   add_info(app, typed);
+  add_bench(app, typed.command.bench);
   require_known_verb(argc, argv);
   try {
     app.parse(argc, argv);

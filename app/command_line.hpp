@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/bench_options.hpp"
 #include "io/case_file.hpp"
 #include "io/log.hpp"
 
@@ -27,9 +28,10 @@ struct RunOptions {
 };
 
 struct Command {
-  enum class Verb { run, check, info, nothing };  // nothing: help or version was printed
+  enum class Verb { run, check, info, bench, nothing };  // nothing: help or version was printed
   Verb verb = Verb::nothing;
   RunOptions run;
+  BenchOptions bench;
   bool json = false;  // info
 };
 

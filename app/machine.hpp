@@ -1,10 +1,15 @@
 #pragma once
 // The machine that the program runs on.
 
+#include <string>
+
 namespace greenwater {
 
 /// Memory that a program may have here [bytes]: that of the machine, or less where the system sets a limit.
 double machine_memory();
+
+/// What the processor calls itself; "unknown" where the system does not tell.
+std::string processor_name();
 
 /// Processors that this program may use.
 int machine_processors();

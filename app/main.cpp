@@ -1,4 +1,4 @@
-// greenwater: the command line in, an exit code out. The verbs are in run.cpp, plan.cpp and info.cpp.
+// greenwater: the command line in, an exit code out. The verbs are in run.cpp, plan.cpp, info.cpp and bench/.
 
 #include <unistd.h>
 
@@ -11,6 +11,7 @@
 #include "app/plan.hpp"
 #include "app/run.hpp"
 #include "app/simulation.hpp"
+#include "bench/bench.hpp"
 #include "core/kokkos.hpp"
 
 namespace {
@@ -53,6 +54,7 @@ int obey(const Command& command) {
     case Command::Verb::run: return run(command.run);
     case Command::Verb::check: return check(command.run);
     case Command::Verb::info: return info(command.json);
+    case Command::Verb::bench: return run_bench(command.bench);
     case Command::Verb::nothing: return 0;
   }
   return 1;

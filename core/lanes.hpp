@@ -123,17 +123,18 @@ KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
   }
 }
 
-/// The sum of all lanes, in accum.
+/// The sum of all lanes, in accum: of halves, of halves of halves ...
 template <class V>
 KOKKOS_INLINE_FUNCTION accum sum_lanes(const V& v) {
   if constexpr (is_scalar<V>) {
     return v;
   } else {
-    constexpr int width = static_cast<int>(sizeof(V) / sizeof(v[0]));
-    const auto wide = __builtin_convertvector(v, Lanes<accum, width>);
-    accum sum = 0;
-    for (int l = 0; l < width; ++l) sum += wide[l];
-    return sum;
+    using T = std::remove_cv_t<std::remove_reference_t<decltype(V{}[0])>>;
+    constexpr int half = static_cast<int>(sizeof(V) / sizeof(T)) / 2;
+    Lanes<T, half> low, high;
+    __builtin_memcpy(&low, &v, sizeof low);
+    __builtin_memcpy(&high, reinterpret_cast<const char*>(&v) + sizeof low, sizeof high);
+    return sum_lanes(convert_lanes<Lanes<accum, half>>(low) + convert_lanes<Lanes<accum, half>>(high));
   }
 }
 
@@ -184,6 +185,10 @@ inline V sqrt(const V& v) {
     V y = (V)_mm512_maskz_rsqrt14_pd(0xff, (__m512d)positive);
     for (int step = 0; step < 2; ++step) y += y * (0.5 - 0.5 * positive * y * y);
     return v * y;
+  } else if constexpr (std::is_same<V, Lanes<float, 8>>::value) {
+    return (V)_mm256_maskz_sqrt_ps(0xff, (__m256)v);
+  } else if constexpr (std::is_same<V, Lanes<float, 16>>::value) {
+    return (V)_mm512_maskz_sqrt_ps(0xffff, (__m512)v);
   }
 #endif
   V root{};
@@ -223,6 +228,8 @@ KOKKOS_INLINE_FUNCTION V gather_lanes(const T* from, const Index& j) {
       return (V)_mm512_mask_i32gather_pd(_mm512_setzero_pd(), 0xff, (__m256i)j, from, 8);
     if constexpr (std::is_same<T, float>::value && sizeof(V) == 64)
       return (V)_mm512_mask_i32gather_ps(_mm512_setzero_ps(), 0xffff, (__m512i)j, from, 4);
+    if constexpr (std::is_same<T, int>::value && sizeof(V) == 64)
+      return (V)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff, (__m512i)j, from, 4);
 #endif
     V v{};
     for (std::size_t l = 0; l < sizeof(V) / sizeof(v[0]); ++l) v[l] = from[j[l]];

@@ -11,34 +11,35 @@ void number_from_zero(const IndexField& id) {
       KOKKOS_LAMBDA(const int i) { id(i) = i; });
 }
 
-template <class Field>
-void gather(const Field& from, const IndexField& order, const Field& to, int count) {
-  Kokkos::parallel_for(
-      "greenwater::reorder", Range(0, count), KOKKOS_LAMBDA(const int k) { to(k) = from(order(k)); });
-}
-
-template <class Field>
-void gather_rows(const Field& from, const IndexField& order, const Field& to, int count) {
-  const int dim = static_cast<int>(from.extent(1));
+template <int Dim>
+void gather_in(const Particles& from, const IndexField& order, const Particles& to, int count) {
+  const auto id = Read<IndexField>(from.id);
+  const auto x = Read<CoordField>(from.position);
+  const auto u = Read<VectorField>(from.velocity);
+  const auto p = Read<ScalarField>(from.pressure);
+  const auto surface = Read<FlagField>(from.surface);
+  const auto new_id = to.id;
+  const auto new_x = to.position;
+  const auto new_u = to.velocity;
+  const auto new_p = to.pressure;
+  const auto new_surface = to.surface;
   Kokkos::parallel_for(
       "greenwater::reorder", Range(0, count), KOKKOS_LAMBDA(const int k) {
-        for (int d = 0; d < dim; ++d) to(k, d) = from(order(k), d);
+        const int i = order(k);
+        new_id(k) = id(i);
+        for (int d = 0; d < Dim; ++d) new_x(k, d) = x(i, d);
+        for (int d = 0; d < Dim; ++d) new_u(k, d) = u(i, d);
+        new_p(k) = p(i);
+        new_surface(k) = surface(i);
       });
 }
 
-template <class Field>
-void reorder(Field& field, Field& scratch, const IndexField& order, int count) {
-  if (scratch.extent(0) != field.extent(0)) scratch = uncleared<Field>("greenwater::reorder_scratch", field.extent(0));
-  gather(field, order, scratch, count);
-  std::swap(field, scratch);
-}
-
-template <class Field>
-void reorder_rows(Field& field, Field& scratch, const IndexField& order, int count) {
-  if (scratch.extent(0) != field.extent(0) || scratch.extent(1) != field.extent(1))
-    scratch = uncleared<Field>("greenwater::reorder_scratch", field.extent(0), field.extent(1));
-  gather_rows(field, order, scratch, count);
-  std::swap(field, scratch);
+void gather_extra(const VectorField& from, const IndexField& order, const VectorField& to, int count) {
+  const int dim = static_cast<int>(from.extent(1));
+  Kokkos::parallel_for(
+      "greenwater::reorder_extra", Range(0, count), KOKKOS_LAMBDA(const int k) {
+        for (int d = 0; d < dim; ++d) to(k, d) = from(order(k), d);
+      });
 }
 
 }  // namespace
@@ -64,15 +65,28 @@ int add_extra(Particles& particles, const std::string& name, const std::string& 
   return static_cast<int>(particles.extras.size()) - 1;
 }
 
-// The acceleration is not carried over: every step writes it anew before anybody reads it.
+// Acceleration and n are not carried over: every step writes them anew before anybody reads them.
 void Reorder::apply(Particles& particles, const IndexField& order, int kept) {
-  reorder(particles.id, index_, order, kept);
-  reorder_rows(particles.position, coord_, order, kept);
-  reorder_rows(particles.velocity, vector_, order, kept);
-  reorder(particles.pressure, scalar_, order, kept);
-  reorder(particles.number_density, scalar_, order, kept);
-  reorder(particles.surface, flag_, order, kept);
-  for (ExtraField& extra : particles.extras) reorder_rows(extra.values, vector_, order, kept);
+  const std::size_t room = particles.id.extent(0);
+  if (other_.id.extent(0) != room || other_.dim != particles.dim) {
+    other_.dim = particles.dim;
+    other_.id = uncleared<IndexField>("greenwater::reorder_id", room);
+    other_.position = uncleared<CoordField>("greenwater::reorder_position", room, particles.dim);
+    other_.velocity = uncleared<VectorField>("greenwater::reorder_velocity", room, particles.dim);
+    other_.pressure = uncleared<ScalarField>("greenwater::reorder_pressure", room);
+    other_.surface = uncleared<FlagField>("greenwater::reorder_surface", room);
+  }
+  particles.dim == 2 ? gather_in<2>(particles, order, other_, kept) : gather_in<3>(particles, order, other_, kept);
+  std::swap(particles.id, other_.id);
+  std::swap(particles.position, other_.position);
+  std::swap(particles.velocity, other_.velocity);
+  std::swap(particles.pressure, other_.pressure);
+  std::swap(particles.surface, other_.surface);
+  for (ExtraField& extra : particles.extras) {
+    if (extra_.extent(0) != room) extra_ = uncleared<VectorField>("greenwater::reorder_extra", room, particles.dim);
+    gather_extra(extra.values, order, extra_, kept);
+    std::swap(extra.values, extra_);
+  }
   particles.count = kept;
 }
 

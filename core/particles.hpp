@@ -45,11 +45,8 @@ class Reorder {
   void apply(Particles& particles, const IndexField& order, int kept);
 
  private:
-  IndexField index_;
-  CoordField coord_;
-  VectorField vector_;
-  ScalarField scalar_;
-  FlagField flag_;
+  Particles other_;    // where the fields go; then the two change places
+  VectorField extra_;
 };
 
 }  // namespace greenwater

@@ -16,19 +16,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 constexpr const char* program_name = "greenwater";
 
-/// The variables that can change a run.
-Json environment() {
-  constexpr std::array prefixes{"OMP_", "KOKKOS_", "GOMP_", "KMP_", "GREENWATER_", "HDF5_"};
-  Json found = Json::object();
-  for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
-    const std::string text = *entry;
-    const auto equals = text.find('=');
-    const bool ours = std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return text.starts_with(p); });
-    if (ours && equals != std::string::npos) found[text.substr(0, equals)] = text.substr(equals + 1);
-  }
-  return found;
-}
-
 Json build() {
   const BuildFacts& facts = build_facts();
   return {{"version", std::string(facts.version)},
@@ -56,7 +43,7 @@ std::string manifest_text(const RunOrigin& origin, const std::optional<RunEnd>& 
   manifest["backend"] = origin.backend;
   manifest["threads"] = origin.threads;
   manifest["host"] = host_name();
-  manifest["environment"] = environment();
+  manifest["environment"] = run_environment();
   manifest["command_line"] = origin.command_line;
   manifest["case"] = {{"name", origin.case_name}, {"file", origin.case_file}, {"options", origin.case_options}};
   manifest["started"] = utc_text(origin.started);
@@ -91,6 +78,18 @@ ResultsOrigin results_origin(const RunOrigin& origin, const std::string& case_te
                         {"created", utc_text(origin.started)}};
   results.case_text = case_text;
   return results;
+}
+
+std::map<std::string, std::string> run_environment() {
+  constexpr std::array prefixes{"OMP_", "KOKKOS_", "GOMP_", "KMP_", "GREENWATER_", "HDF5_"};
+  std::map<std::string, std::string> found;
+  for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string text = *entry;
+    const auto equals = text.find('=');
+    const bool ours = std::any_of(prefixes.begin(), prefixes.end(), [&](const char* p) { return text.starts_with(p); });
+    if (ours && equals != std::string::npos) found[text.substr(0, equals)] = text.substr(equals + 1);
+  }
+  return found;
 }
 
 std::string host_name() {

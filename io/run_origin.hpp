@@ -2,6 +2,7 @@
 // Where a run comes from: everything needed to do it again, for manifest.json and for results.h5.
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -40,6 +41,9 @@ bool is_run_folder(const std::filesystem::path& folder);
 
 /// The same facts as attributes of results.h5.
 ResultsOrigin results_origin(const RunOrigin& origin, const std::string& case_text);
+
+/// The environment variables that can change a run: OMP_*, KOKKOS_* and the like.
+std::map<std::string, std::string> run_environment();
 
 std::string host_name();
 /// The command line in one line, quoted for a shell.

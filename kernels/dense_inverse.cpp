@@ -5,6 +5,7 @@
 namespace greenwater {
 
 void invert_in_place(double* A, int size) {
+  if (size == 0) return;
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_dense, largest_dense>;
   Eigen::Map<Matrix> there(A, size, size);
   const Matrix symmetric = 0.5 * (there + there.transpose());

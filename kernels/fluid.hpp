@@ -37,6 +37,12 @@ Around<Dim> around(const Fluid& fluid) {
   return fluid.rows.around<Dim>(fluid.particles, fluid.walls);
 }
 
+/// As around(), before anything has moved since the rows were built; for sums with the given weight.
+template <int Dim>
+Around<Dim> around_unmoved(const Fluid& fluid, const Weight& weight) {
+  return fluid.rows.around_unmoved<Dim>(fluid.particles, fluid.walls, weight);
+}
+
 /// What the rows of a fluid are made with.
 inline RowOptions row_options(const Fluid& fluid) {
   const real widest =

@@ -182,6 +182,8 @@ void launch_prolong(const Level& fine, const Level& coarse) {
       KOKKOS_LAMBDA(const int number) { prolong_to<Dim>(fine, coarse, number); });
 }
 
+Team one_team() { return on_host ? Team(1, 1) : Team(1, Kokkos::AUTO); }
+
 // For every item of a level, by the threads of a team; all are done before it returns.
 template <class F>
 KOKKOS_INLINE_FUNCTION void for_items(const Member& team, const Level& level, const F& f) {
@@ -203,7 +205,7 @@ KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& sta
 template <int Dim>
 void launch_small_levels(const LevelStack& stack, int from) {
   Kokkos::parallel_for(
-      "greenwater::grid_small_levels", Team(1, Kokkos::AUTO), KOKKOS_LAMBDA(const Member& team) {
+      "greenwater::grid_small_levels", one_team(), KOKKOS_LAMBDA(const Member& team) {
         const int last = stack.count - 1;
         for (int l = from; l < last; ++l) {
           const Level &fine = stack.level[l], &coarse = stack.level[l + 1];
@@ -244,15 +246,25 @@ struct Unknowns {
 
 int node_number(const Level& level, int i, int j, int k) { return (k * level.nodes[1] + j) * level.nodes[0] + i; }
 
+// a_ii of the node that has this place in fields (slot, lane).
+float own_entry(const Level& level, int value, int size) {
+  return level.stencil[(value / node_lanes * size + size / 2) * node_lanes + value % node_lanes];
+}
+
+// Nodes that the fluid hardly touches are left out: their rows are next to nothing, and rounding is not small beside it.
 Unknowns unknowns_of(const Level& level, int size) {
+  constexpr float hardly = 1e-4f;
   Unknowns found;
   found.number.fill(-1);
+  float most = 0;
+  for (int value = node_lanes; value < (level.active + 1) * node_lanes; ++value)
+    most = std::max(most, own_entry(level, value, size));
   for (int slot = 0; slot < level.active; ++slot) {
     const Item pack(level, slot * items_of_pack, size);
     for (int lane = 0; lane < node_lanes && pack.i + lane < level.nodes[0]; ++lane) {
       const Unknowns::Node node = {pack.i + lane,      pack.j, pack.k, pack.value + lane, pack.position + lane,
                                    pack.stencil + lane};
-      if (!(level.stencil[node.stencil + size / 2 * node_lanes] > 0)) continue;
+      if (!(own_entry(level, node.value, size) > hardly * most)) continue;
       found.number[node_number(level, node.i, node.j, node.k)] = found.count;
       found.node[found.count++] = node;
     }

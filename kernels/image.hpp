@@ -3,6 +3,7 @@
 
 #include "core/lanes.hpp"
 #include "kernels/sight.hpp"
+#include "kernels/weight.hpp"
 
 namespace greenwater {
 
@@ -81,6 +82,11 @@ template <int Dim>
 struct Itself {
   static constexpr bool mirrored = false;
   static constexpr real share = 1;
+  bool kept = false;  // the weights of the rows can be taken
+  Pack weight_kept{};
+
+  /// share w(r), from r^2 [m^2].
+  KOKKOS_INLINE_FUNCTION Pack weight(const Weight& w, const Pack& r2) const { return kept ? weight_kept : w(sqrt(r2)); }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> velocity(const Vec<Dim, Pack>& u) const { return u; }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> sticking_velocity(const Vec<Dim, Pack>& u) const { return u; }
   template <class X>
@@ -95,6 +101,13 @@ struct Images {
   static constexpr bool mirrored = true;
   Image<Dim> image[pack_lanes];
   Pack share{};  // with which each counts in every sum
+  bool kept = false;  // weights are rounded like those of the rows: a mirror image balances its original
+
+  /// share w(r), from r^2 [m^2].
+  KOKKOS_INLINE_FUNCTION Pack weight(const Weight& w, const Pack& r2) const {
+    const Pack exact = share * w(sqrt(r2));
+    return kept ? convert_lanes<Pack>(convert_lanes<Lanes<float, pack_lanes>>(exact)) : exact;
+  }
 
   /// Velocities of the images of velocities: slipping freely at walls.
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> velocity(const Vec<Dim, Pack>& u) const { return mirrored_velocity<false>(u); }

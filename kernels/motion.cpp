@@ -168,7 +168,7 @@ int correct_in(Fluid& fluid, real dt) {
 
 template <int Dim>
 void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
-  const auto near = around<Dim>(fluid);
+  const auto near = around_unmoved<Dim>(fluid, fluid.gradient.weight);
   const auto x = Read<CoordField>(fluid.particles.position);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto drive = drive_of<Dim>(fluid);
@@ -183,7 +183,7 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
         Vec<Dim, Pack> sum_pf{}, sum_f{};  // sum (p_j - p_min) f = sum p_j f - p_min sum f: one pass
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
-          const Pack weight = zero_unless(r2 >= touching, image.share * w(sqrt(r2)));
+          const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2));
           Pack pj = gather_pack(p, j);
           if constexpr (std::decay_t<decltype(image)>::mirrored)
             pj += rho * image.pressure_offset(drive.at(j), gather_pack<Dim>(x, j));

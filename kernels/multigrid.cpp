@@ -25,13 +25,15 @@ struct Window {
 
 template <class V>
 KOKKOS_INLINE_FUNCTION V absolute(const V& v) {
-  return larger(v, -v);
+  if constexpr (is_scalar<V>)
+    return fabs(v);
+  else
+    return (V)((NodeIndex)v & 0x7fffffff);  // without the bit of the sign
 }
 
 /// How much a particle has of a node: 1 at it, 0 one cell away.
-template <class V>
-KOKKOS_INLINE_FUNCTION V hat(const V& distance) {
-  return larger(V{}, 1.0f - absolute(distance));
+KOKKOS_INLINE_FUNCTION FloatPack hat(const FloatPack& distance) {
+  return larger(FloatPack{}, 1.0f - absolute(distance));
 }
 
 template <class V>
@@ -43,27 +45,31 @@ KOKKOS_INLINE_FUNCTION V rounded_down(const V& v) {
 // kept in its cell, so that the cell of a particle and that of its place are one.
 template <int Dim>
 void seat_particles(const PressureSystem& system, const FloatSystem& to, const FloatField (&place)[3]) {
+  using Floats = Lanes<float, pack_lanes>;
   const auto x = Read<CoordField>(system.fluid().particles.position);
   const auto fixed = Read<FlagField>(system.fixed());
   const auto diagonal = Read<ScalarField>(system.diagonal());
   const GridShape grid = system.fluid().grid.shape();
-  const real K = system.factor();
+  const float per_K = static_cast<float>(1 / system.factor());
   const int count = system.count();
   const auto put = to;
-  const FloatField place0 = place[0], place1 = place[1], place2 = place[2];
+  const Vec<3, FloatField> seat = {{place[0], place[1], place[2]}};
   Kokkos::parallel_for(
-      "greenwater::seat_particles", Range(0, padded(count)), KOKKOS_LAMBDA(const int i) {
-        const bool free = i < count && !fixed(i);
-        put.diagonal(i) = free ? static_cast<float>(diagonal(i) / K) : 0.0f;
-        put.inverse(i) = free ? static_cast<float>(K / diagonal(i)) : 0.0f;
+      "greenwater::seat_particles", Range(0, padded(count) / pack_lanes), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        Floats free{};
+        for (int l = 0; l < pack_lanes; ++l) set_lane(free, l, i + l < count && !fixed(i + l) ? 1.0f : 0.0f);
+        const Floats own = per_K * convert_lanes<Floats>(load_pack(diagonal, i));
+        store_lanes(&put.diagonal(i), zero_unless(free > 0.0f, own));
+        store_lanes(&put.inverse(i), zero_unless(free > 0.0f, 1.0f / own));
+        const auto at = load_pack<Dim>(x, i);
         for (int d = 0; d < Dim; ++d) {
-          const FloatField& to_place = d == 0 ? place0 : d == 1 ? place1 : place2;
-          to_place(i) = far_away;
-          if (!free) continue;
-          const int cell = grid.along(d, x(i, d));
-          const float at = static_cast<float>((x(i, d) - grid.origin[d]) / grid.cell);
-          const float edge = static_cast<float>(cell + 1) * (1 - 1.2e-7f);
-          to_place(i) = larger(smaller(at, edge), static_cast<float>(cell));
+          const auto exact = (at[d] - grid.origin[d]) / grid.cell;
+          const IndexPack cell =
+              smaller(larger(convert_lanes<IndexPack>(exact), IndexPack{}), all_lanes<IndexPack>(grid.cells[d] - 1));
+          const Floats low = convert_lanes<Floats>(cell), below_next = (low + 1.0f) * (1 - 1.2e-7f);
+          const Floats kept = larger(smaller(convert_lanes<Floats>(exact), below_next), low);
+          store_lanes(&seat.c[d](i), select(free > 0.0f, kept, all_lanes<Floats>(far_away)));
         }
       });
 }
@@ -145,38 +151,74 @@ void row_windows(const Seats& seats, const FloatSystem& system, int layer, const
       });
 }
 
-// Stencils of the first level: P^T (A P) / K. Each node gathers from the particles of the cells around it.
+// What each cell's particles have of P^T (A P) / K: for each of its corners, their windows weighted with their shares of it.
+// A cell has the number of its lowest corner.
 template <int Dim>
-void collect_stencils(const Seats& seats, const Level& level, int layer, const FloatField& window) {
-  constexpr int size = stencil_size(Dim);
+void collect_cells(const Seats& seats, const Level& level, const FloatField& window, const FloatField& cells) {
+  constexpr int corners = 1 << Dim;
   Kokkos::parallel_for(
-      "greenwater::grid_collect_stencils", Range(0, level.active * node_lanes), KOKKOS_LAMBDA(const int number) {
-        const Item pack(level, number / node_lanes * items_of_pack, size);
-        const int lane = number % node_lanes, i = pack.i + lane;
-        float* stencil = level.stencil + pack.stencil + lane;
-        if (layer == 0)
-          for (int e = 0; e < size; ++e) stencil[e * node_lanes] = 0;
+      "greenwater::grid_collect_cells", Range(0, level.active * node_lanes), KOKKOS_LAMBDA(const int number) {
+        const Item pack(level, number / node_lanes * items_of_pack, stencil_size(Dim));
+        const int lane = number % node_lanes, node[3] = {pack.i + lane, pack.j, pack.k};
         const GridShape& grid = seats.grid;
-        for (int cz = 0; cz < (Dim == 3 ? 2 : 1); ++cz)
+        Window sum[corners] = {};
+        int begin = 0, end = 0;
+        if (node[0] < grid.cells[0] && node[1] < grid.cells[1] && node[2] < grid.cells[2]) {
+          const int cell = (node[2] * grid.cells[1] + node[1]) * grid.cells[0] + node[0];
+          begin = seats.first(cell);
+          end = seats.first(cell + 1);
+        }
+        for (int p = begin; p < end; ++p) {
+          if (seats.place[0](p) == far_away) continue;
+          float share[3][2];
+          for (int d = 0; d < Dim; ++d) {
+            share[d][1] = seats.place[d](p) - static_cast<float>(node[d]);
+            share[d][0] = 1 - share[d][1];
+          }
+          for (int c = 0; c < corners; ++c)
+            sum[c].add(share[0][c & 1] * share[1][c / 2 & 1] * (Dim == 3 ? share[2][c / 4] : 1.0f),
+                       &window(p * window_nodes));
+        }
+        for (int c = 0; c < corners; ++c) sum[c].store(&cells(((pack.value + lane) * corners + c) * window_nodes));
+      });
+}
+
+// Places in fields (slot, lane) of the cells i, i + 1 ... of line (j, k); those that are not there have slot 0.
+KOKKOS_INLINE_FUNCTION NodeIndex cells_along(const Level& level, int i, int j, int k) {
+  NodeIndex place{};
+  if (j < 0 || k < 0) return place;
+  const int* slot = level.slot + (k * level.nodes[1] + j) * level.packs;
+  for (int l = 0; l < float_lanes; ++l)
+    if (i + l >= 0) set_lane(place, l, slot[(i + l) / node_lanes] * node_lanes + (i + l) % node_lanes);
+  return place;
+}
+
+// Stencils of the first level: each node takes its part of the cells around it.
+template <int Dim>
+void collect_stencils(const Level& level, int layer, const FloatField& cells) {
+  constexpr int size = stencil_size(Dim), plane = across * across;
+  const float* parts = cells.data();
+  Kokkos::parallel_for(
+      "greenwater::grid_collect_stencils", Range(0, items(level)), KOKKOS_LAMBDA(const int number) {
+        const Item at(level, number, size);
+        // The window of a cell begins one node before the cell.
+        for (int cz = 0; cz < (Dim == 3 ? 2 : 1); ++cz) {
+          FloatPack sum[plane] = {};
           for (int cy = 0; cy < 2; ++cy)
             for (int cx = 0; cx < 2; ++cx) {
-              const int ci = i - 1 + cx, cj = pack.j - 1 + cy, ck = Dim == 3 ? pack.k - 1 + cz : 0;
-              if (ci < 0 || ci >= grid.cells[0] || cj < 0 || cj >= grid.cells[1] || ck < 0 || ck >= grid.cells[2])
-                continue;
-              const int cell = (ck * grid.cells[1] + cj) * grid.cells[0] + ci;
-              Window sum{};
-              for (int p = seats.first(cell); p < seats.first(cell + 1); ++p) {
-                float share = hat(seats.place[0](p) - static_cast<float>(i)) *
-                              hat(seats.place[1](p) - static_cast<float>(pack.j));
-                if constexpr (Dim == 3) share *= hat(seats.place[2](p) - static_cast<float>(pack.k));
-                if (share > 0) sum.add(share, &window(p * window_nodes));
-              }
-              float part[window_nodes];
-              sum.store(part);
-              float* plane = stencil + (cz + layer) * (Dim == 3 ? across * across * node_lanes : 0);
+              const NodeIndex cell = cells_along(level, at.i - 1 + cx, at.j - 1 + cy, Dim == 3 ? at.k - 1 + cz : 0);
+              const NodeIndex place = cell * (window_nodes << Dim);
+              const int corner = (1 - cx) + 2 * (1 - cy) + (Dim == 3 ? 4 * (1 - cz) : 0);
+              const float* part = parts + corner * window_nodes;
               for (int m = 0; m < wide; ++m)
-                for (int n = 0; n < wide; ++n) plane[((cy + m) * across + cx + n) * node_lanes] += part[m * wide + n];
+                for (int n = 0; n < wide; ++n, ++part)
+                  sum[(cy + m) * across + cx + n] += gather_lanes<FloatPack>(part, place);
             }
+          float* to = level.stencil + at.stencil + (Dim == 3 ? (cz + layer) * plane * node_lanes : 0);
+          const bool first = layer == 0 || cz == 1;  // layer after layer of windows comes to a plane of stencils twice
+          for (int e = 0; e < plane; ++e, to += node_lanes)
+            store_lanes(to, first ? sum[e] : sum[e] + load_lanes<FloatPack>(to));
+        }
       });
 }
 
@@ -192,34 +234,67 @@ void first_residual(const FloatSystem& system, const FloatField& z, const FloatF
       });
 }
 
-// b = P^T t on the first level, and x = relax b.
+// What each cell's particles have of P^T t, corner by corner: (slot, corner, lane).
 template <int Dim>
-void restrict_particles(const Seats& seats, const Level& level, const FloatField& t) {
+void restrict_cells(const Seats& seats, const Level& level, const FloatField& t, const FloatField& parts) {
+  constexpr int corners = 1 << Dim;
+  const float* values = t.data();
   Kokkos::parallel_for(
-      "greenwater::grid_restrict_particles", Range(0, level.active * node_lanes), KOKKOS_LAMBDA(const int number) {
-        const Item pack(level, number / node_lanes * items_of_pack, stencil_size(Dim));
-        const int lane = number % node_lanes, i = pack.i + lane;
+      "greenwater::grid_restrict_cells", Range(0, items(level)), KOKKOS_LAMBDA(const int number) {
+        const Item at(level, number, stencil_size(Dim));
         const GridShape& grid = seats.grid;
-        const int low = larger(i - 1, 0), high = smaller(i + 1, grid.cells[0]);
-        FloatPack sum{};
-        if (i < level.nodes[0])
-          for (int ck = larger(pack.k - 1, 0); ck <= smaller(pack.k, grid.cells[2] - 1); ++ck)
-            for (int cj = larger(pack.j - 1, 0); cj <= smaller(pack.j, grid.cells[1] - 1); ++cj) {
-              const int cells = (ck * grid.cells[1] + cj) * grid.cells[0];
-              const int end = seats.first(cells + high);
-              for (int p = seats.first(cells + low); p < end; p += float_lanes) {
-                FloatPack share = hat(load_lanes<FloatPack>(&seats.place[0](p)) - static_cast<float>(i)) *
-                                  hat(load_lanes<FloatPack>(&seats.place[1](p)) - static_cast<float>(pack.j));
-                if constexpr (Dim == 3)
-                  share *= hat(load_lanes<FloatPack>(&seats.place[2](p)) - static_cast<float>(pack.k));
-                const NodeIndex left = end - p - counted_lanes<NodeIndex>();
-                sum += zero_unless(left > 0, share * load_lanes<FloatPack>(&t(p)));
-              }
+        NodeIndex begin{}, there{};
+        int most = 0;
+        if (at.j < grid.cells[1] && at.k < grid.cells[2]) {
+          const int cell = (at.k * grid.cells[1] + at.j) * grid.cells[0] + at.i;
+          for (int l = 0; l < smaller(float_lanes, grid.cells[0] - at.i); ++l) {
+            const int first = seats.first(cell + l), particles = seats.first(cell + l + 1) - first;
+            set_lane(begin, l, first);
+            set_lane(there, l, particles);
+            most = larger(most, particles);
+          }
+        }
+        const FloatPack corner[3] = {convert_lanes<FloatPack>(at.i + counted_lanes<NodeIndex>()),
+                                     all_lanes<FloatPack>(at.j), all_lanes<FloatPack>(at.k)};
+        FloatPack sum[corners] = {};
+        for (int e = 0; e < most; ++e) {
+          const NodeIndex p = zero_unless(there > e, begin + e);
+          FloatPack part[corners] = {zero_unless(there > e, gather_lanes<FloatPack>(values, p))};
+          for (int d = 0; d < Dim; ++d) {
+            const FloatPack share = gather_lanes<FloatPack>(seats.place[d].data(), p) - corner[d];
+            for (int c = 0; c < 1 << d; ++c) {
+              part[c + (1 << d)] = part[c] * share;
+              part[c] *= 1.0f - share;
             }
-        float b = 0;
-        for (int l = 0; l < float_lanes; ++l) b += greenwater::lane(sum, l);
-        level.b[pack.value + lane] = b;
-        level.x[pack.position + lane] = level.relax[pack.value + lane] * b;
+          }
+          for (int c = 0; c < corners; ++c) sum[c] += part[c];
+        }
+        const int slot = at.value / node_lanes, lane = at.value % node_lanes;
+        for (int c = 0; c < corners; ++c) store_lanes(&parts((slot * corners + c) * node_lanes + lane), sum[c]);
+      });
+}
+
+// b = P^T t on the first level, from its cells, and x = relax b.
+template <int Dim>
+void restrict_to_nodes(const Level& level, const FloatField& parts) {
+  constexpr int corners = 1 << Dim;
+  const float* part = parts.data();
+  Kokkos::parallel_for(
+      "greenwater::grid_restrict_to_nodes", Range(0, items(level)), KOKKOS_LAMBDA(const int number) {
+        const Item at(level, number, stencil_size(Dim));
+        FloatPack b{};
+        for (int cz = 0; cz < (Dim == 3 ? 2 : 1); ++cz)
+          for (int cy = 0; cy < 2; ++cy)
+            for (int cx = 0; cx < 2; ++cx) {
+              const NodeIndex cell = cells_along(level, at.i - 1 + cx, at.j - 1 + cy, Dim == 3 ? at.k - 1 + cz : 0);
+              const int corner = (1 - cx) + 2 * (1 - cy) + (Dim == 3 ? 4 * (1 - cz) : 0);
+              const NodeIndex lane = cell % node_lanes, place = (cell - lane) * corners + lane;
+              b += gather_lanes<FloatPack>(part + corner * node_lanes, place);
+            }
+        const FloatPack relax = load_lanes<FloatPack>(level.relax + at.value);
+        b = zero_unless(relax != 0.0f, b);
+        store_lanes(level.b + at.value, b);
+        store_lanes(level.x + at.position, relax * b);
       });
 }
 
@@ -280,18 +355,20 @@ void grow(FloatField& field, const std::string& label, std::int64_t size) {
 }
 
 template <int Dim>
-void make_first_level(const Seats& seats, const FloatSystem& system, const GridLevels& levels,
-                      const FloatField& window) {
+void make_first_level(const Seats& seats, const FloatSystem& system, const Level& level, const FloatField& window,
+                      const FloatField& cells) {
   for (int layer = 0; layer < (Dim == 3 ? wide : 1); ++layer) {
     row_windows<Dim>(seats, system, layer, window);
-    collect_stencils<Dim>(seats, levels.first(), layer, window);
+    collect_cells<Dim>(seats, level, window, cells);
+    collect_stencils<Dim>(level, layer, cells);
   }
 }
 
 template <int Dim>
 void correct_from_grid(const Seats& seats, const FloatSystem& system, const GridLevels& levels, const FloatField& t,
-                       const SplitNodes& splits, const FloatField& z) {
-  restrict_particles<Dim>(seats, levels.first(), t);
+                       const FloatField& parts, const SplitNodes& splits, const FloatField& z) {
+  restrict_cells<Dim>(seats, levels.first(), t, parts);
+  restrict_to_nodes<Dim>(levels.first(), parts);
   splits.restrict_particles(seats, levels, t);
   splits.any() ? splits.cycle(levels) : levels.cycle();
   splits.prolong_to_particles(seats, levels, z);
@@ -314,8 +391,12 @@ void Multigrid::update(const PressureSystem& system) {
   dim == 2 ? seat_particles<2>(system, system_, place_) : seat_particles<3>(system, system_, place_);
   find_packs(seats, levels_.first(), levels_.wanted());
   levels_.activate();
-  dim == 2 ? make_first_level<2>(seats, system_, levels_, window_)
-           : make_first_level<3>(seats, system_, levels_, window_);
+  const Level& level = levels_.first();
+  const std::int64_t values = static_cast<std::int64_t>(level.active + 1) * node_lanes;
+  grow(cells_, "greenwater::multigrid_cells", values * (window_nodes << dim));
+  grow(parts_, "greenwater::multigrid_parts", values << dim);
+  dim == 2 ? make_first_level<2>(seats, system_, level, window_, cells_)
+           : make_first_level<3>(seats, system_, level, window_, cells_);
   levels_.coarsen();
   splits_.update(fluid, seats, system_, levels_);
 }
@@ -333,8 +414,8 @@ void Multigrid::grow_fields(int dim) {
 accum Multigrid::finish(const FloatField& r, const FloatField& first, const FloatField& z) {
   const Seats seats = {system_.count, grid_, first_, {place_[0], place_[1], place_[2]}};
   first_residual(system_, first, z);
-  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, z, splits_, first)
-                     : correct_from_grid<3>(seats, system_, levels_, z, splits_, first);
+  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, z, parts_, splits_, first)
+                     : correct_from_grid<3>(seats, system_, levels_, z, parts_, splits_, first);
   return last_sweep(system_, r, first, z);
 }
 

@@ -39,6 +39,8 @@ class Multigrid {
   IndexField first_;        // of the grid's cells
   FloatField place_[3];     // (i) of the particles, in cells from the grid's origin [-]; far away at the surface
   FloatField window_;       // (i, node) A P / K at the nodes around the particle's cell
+  FloatField cells_;        // (slot, lane, corner, node) of P^T A P / K: what each cell has, corner by corner
+  FloatField parts_;        // (slot, corner, lane) of P^T r: what each cell has
   FloatField first_sweep_;  // (i) r / diagonal, for apply()
 };
 

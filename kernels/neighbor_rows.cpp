@@ -165,6 +165,7 @@ void build_in_one_pass(NeighborRows& rows, const RowSearch<Dim>& search, Kokkos:
 void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
                          const RowOptions& options) {
   far_ = static_cast<real>(2 * options.radius);
+  kept_ = options.laplacian;
   const int count = particles.count;
   grow_heads(*this, count, walls.count > 0);
   const auto build_in = [&](const auto& search) {

@@ -18,7 +18,8 @@ struct Around {
   Kokkos::View<const Mirror*, Device> mirrors;
   Kokkos::View<const Panel*, Device> panels;
   Kokkos::View<const Joint*, Device> joints;
-  real far;  // beyond every radius [m]
+  real far;   // beyond every radius [m]
+  bool kept;  // Itself::weight() may take the weights that stand beside the rows
 
   using CoordPack = Lanes<coord, pack_lanes>;
 
@@ -33,13 +34,20 @@ struct Around {
       auto r = convert_lanes_of<Pack>(difference(gather_pack<Dim>(x, j), xi));
       const auto there = number > static_cast<real>(k);
       for (int d = 0; d < Dim; ++d) r[d] = select(there, r[d], all_lanes<Pack>(far));
-      f(j, r, Itself<Dim>{});
+      Itself<Dim> itself;
+      itself.kept = kept;
+      if (kept) {
+        const auto weight = load_lanes<Lanes<float, pack_lanes>>(near.weight.data() + place);
+        itself.weight_kept = zero_unless(there, convert_lanes<Pack>(weight));
+      }
+      f(j, r, itself);
     });
     if (images.number.extent(0) == 0) return;
     for_each_place(images, i, [&](const int k, const std::int64_t place, const Pack& number) {
       const auto j = load_lanes<IndexPack>(images.index.data() + place);
       const auto xj = gather_pack<Dim>(x, j);
       Images<Dim> image;
+      image.kept = kept;
       Vec<Dim, Pack> r;
       for (int d = 0; d < Dim; ++d) r[d] = all_lanes<Pack>(far);
       for (int l = 0; l < pack_lanes; ++l) {
@@ -85,7 +93,16 @@ class NeighborRows {
 
   template <int Dim>
   Around<Dim> around(const Particles& particles, const MirrorWalls& walls) const {
-    return {particles.position, near, images, walls.mirror, walls.panel, walls.joint, far_};
+    return {particles.position, near, images, walls.mirror, walls.panel, walls.joint, far_, false};
+  }
+
+  /// As around(), where particles are still where they were when the rows were built: then sums with the weight whose
+  /// values were kept need not compute it again.
+  template <int Dim>
+  Around<Dim> around_unmoved(const Particles& particles, const MirrorWalls& walls, const Weight& weight) const {
+    auto view = around<Dim>(particles, walls);
+    view.kept = near.weight.extent(0) > 0 && weight == kept_;
+    return view;
   }
 
   Rows near;
@@ -95,6 +112,7 @@ class NeighborRows {
   IndexField total_;
   Kokkos::View<std::int64_t[4], Device> taken_;
   real far_ = 0;
+  Weight kept_;
 };
 
 }  // namespace greenwater

@@ -66,20 +66,24 @@ template <int Dim, class Keep>
 void find_among(const double* const* x, const Vec<Dim, coord>& xi, int i, int first, int last, Workbench& bench,
                 Keep keep) {
   const auto steps = counted_lanes<Ints>();
+  Vec<Dim, Doubles> from;
+  for (int d = 0; d < Dim; ++d) from[d] = all_lanes<Doubles>(xi[d]);
+  int count = bench.count;
+  int* const index = bench.index.data();
+  double* const distance2 = bench.r2.data();
   for (int j = first; j < last; j += width) {
     Vec<Dim, Doubles> xj;  // beyond the last candidate there are others, or padding: left out below
     for (int d = 0; d < Dim; ++d) xj[d] = load_lanes<Doubles>(x[d] + j);
-    Vec<Dim, Doubles> from;
-    for (int d = 0; d < Dim; ++d) from[d] = all_lanes<Doubles>(xi[d]);
     const auto way = difference(xj, from);
     Doubles r2 = dot(way, way);
     unsigned bits = keep(xj, r2);
     if (last - j < width) bits &= (1u << (last - j)) - 1;
     if (static_cast<unsigned>(i - j) < width) bits &= ~(1u << (i - j));
-    compress_lanes(bits, r2, bench.r2.data() + bench.count);
-    compress_lanes(bits, steps + j, bench.index.data() + bench.count);
-    bench.count += __builtin_popcount(bits);
+    compress_lanes(bits, r2, distance2 + count);
+    compress_lanes(bits, steps + j, index + count);
+    count += __builtin_popcount(bits);
   }
+  bench.count = count;
 }
 
 // Calls f(first, last) for the stretches of candidates around x.
@@ -119,12 +123,18 @@ class ChunkBuilder {
   }
 
   void weigh() {
-    for (int k = 0; k < bench_.count; k += width) {
-      const Doubles r = sqrt(load_lanes<Doubles>(&bench_.r2[k]));
-      const Doubles w = search_.laplacian(r);
-      store_lanes(&bench_.weight[k], w);
-      store_lanes(&bench_.rounded[k], convert_lanes<Lanes<float, width>>(w));
-      if (!search_.one_weight) store_lanes(&bench_.density[k], search_.density(r));
+    const Weight laplacian = search_.laplacian, of_density = search_.density;
+    const bool one_weight = search_.one_weight;
+    const double* const r2 = bench_.r2.data();
+    double* const weight = bench_.weight.data();
+    double* const other = bench_.density.data();
+    float* const rounded = bench_.rounded.data();
+    for (int k = 0, count = bench_.count; k < count; k += width) {
+      const Doubles r = sqrt(load_lanes<Doubles>(r2 + k));
+      const Doubles w = laplacian(r);
+      store_lanes(weight + k, w);
+      store_lanes(rounded + k, convert_lanes<Lanes<float, width>>(w));
+      if (!one_weight) store_lanes(other + k, of_density(r));
     }
     std::vector<double>& density = search_.one_weight ? bench_.weight : bench_.density;
     for (const auto& seen : bench_.images) {
@@ -246,13 +256,15 @@ class ChunkBuilder {
     const bool keep = near.weight.extent(0) > 0;
     int* index = near.index.data() + place;
     float* weight = keep ? near.weight.data() + place : nullptr;
+    const int* const found = bench_.index.data();
+    const float* const rounded = bench_.rounded.data();
     for (int k = 0; k < longest; ++k, index += row_lanes) {
       const auto there = total > k;
       const Index from = there ? start + k : Index{};
-      const auto j = gather_lanes<Index>(bench_.index.data(), from);
+      const auto j = gather_lanes<Index>(found, from);
       store_lanes(index, there ? j : own);
       if (!keep) continue;
-      const auto w = gather_lanes<Weights>(bench_.rounded.data(), from);
+      const auto w = gather_lanes<Weights>(rounded, from);
       store_lanes(weight, there ? w : Weights{});
       weight += row_lanes;
     }

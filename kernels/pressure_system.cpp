@@ -37,7 +37,7 @@ void density_source(const Fluid& fluid, real gamma, real dt, const ScalarField& 
 
 template <int Dim>
 void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
-  const auto near = around<Dim>(fluid);
+  const auto near = around_unmoved<Dim>(fluid, fluid.gradient.weight);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const auto w = fluid.gradient.weight;
@@ -51,7 +51,7 @@ void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const auto uj = image.velocity(gather_pack<Dim>(u, j));
           const Pack r2 = dot(r, r);
-          const Pack weight = image.share * w(sqrt(r2)) * inverse(larger(r2, all_lanes<Pack>(touching)));
+          const Pack weight = image.weight(w, r2) * inverse(larger(r2, all_lanes<Pack>(touching)));
           div += zero_unless(r2 > touching, dot(difference(uj, ui), r) * weight);
         });
         for (int l = 0; l < pack_lanes; ++l) b(i + l) = fixed(i + l) ? real(0) : factor * lane(div, l);

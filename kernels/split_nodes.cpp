@@ -423,7 +423,7 @@ KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& sta
   });
 }
 
-// The matrix of the last level with its splits, on the device; splits that are none have a one.
+// The matrix of the last level with its splits, on the device.
 template <int Dim>
 void fill_last(const LevelStack& stack, const SplitStack& splits, const FloatField& matrix) {
   const Level last = stack.level[stack.count - 1];
@@ -447,7 +447,7 @@ void fill_last(const LevelStack& stack, const SplitStack& splits, const FloatFie
           else
             value = last.stencil[(at / node_lanes * size + entry) * node_lanes + at % node_lanes];
         }
-        matrix(place) = row == column && m > 0 && !(s.relax[m] > 0) ? 1.0f : value;
+        matrix(place) = value;
       });
 }
 
@@ -596,6 +596,22 @@ std::vector<std::array<int, 3>> twice(std::vector<std::array<int, 3>> nodes) {
   return nodes;
 }
 
+// Splits of which next to nothing is there are left out, as nodes are: rounding is not small beside their rows.
+void invert_without_slivers(std::vector<double>& A, int count, int nodes) {
+  constexpr double hardly = 1e-4;
+  double most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, A[i * count + i]);
+  std::vector<int> out;
+  for (int i = nodes; i < count; ++i)
+    if (!(A[i * count + i] > hardly * most)) out.push_back(i);
+  for (const int i : out) {
+    for (int j = 0; j < count; ++j) A[i * count + j] = A[j * count + i] = 0;
+    A[i * count + i] = 1;
+  }
+  invert_in_place(A.data(), count);
+  for (const int i : out) A[i * count + i] = 0;
+}
+
 template <class Field>
 void grow(Field& field, const std::string& label, std::int64_t size) {
   if (static_cast<std::int64_t>(field.extent(0)) < size) field = Field(label, size + size / 4);
@@ -719,7 +735,7 @@ void SplitNodes::invert_last(const LevelStack& stack) {
   dim_ == 2 ? fill_last<2>(stack, stack_, inverse_) : fill_last<3>(stack, stack_, inverse_);
   Kokkos::deep_copy(host_inverse_, inverse_);
   dense_.assign(host_inverse_.data(), host_inverse_.data() + count * count);
-  invert_in_place(dense_.data(), count);
+  invert_without_slivers(dense_, count, stack.unknowns);
   std::copy(dense_.begin(), dense_.end(), host_inverse_.data());
   Kokkos::deep_copy(inverse_, host_inverse_);
 }

@@ -11,6 +11,15 @@ struct Weight {
   real radius = 0;  // r_e [m]
   real shift = 0;   // s [-]
 
+  /// w(sqrt(r2)) of a pack to seven digits, at less than half the cost.
+  template <class T>
+  KOKKOS_INLINE_FUNCTION T in_float(const T& r2) const {
+    using F = Lanes<float, pack_lanes>;
+    const float re = static_cast<float>(radius), s = static_cast<float>(shift);
+    const F r = sqrt(convert_lanes<F>(r2));
+    return convert_lanes<T>(zero_unless(r < re, re / (r + s * re) - 1 / (1 + s)));
+  }
+
   bool operator==(const Weight&) const = default;
 
   /// Of one distance, or of a pack of them.

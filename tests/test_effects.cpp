@@ -191,6 +191,7 @@ TEST_CASE("a body force drives particles and the images' pressure alike", "[unit
   const auto p = Kokkos::create_mirror(fluid.particles.pressure);
   for (int i = 0; i < fluid.particles.count; ++i) p(i) = fluid.rho * 10 * (3 - x(i, 1));
   Kokkos::deep_copy(fluid.particles.pressure, p);
+  fluid.rows.near.weight = {};  // those that are kept have seven digits only
   pressure_gradient(fluid);
   const auto a = host(fluid.particles.acceleration);
   for (int i = 0; i < fluid.particles.count; ++i)

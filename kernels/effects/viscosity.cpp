@@ -16,7 +16,7 @@ void viscosity_in(const Fluid& fluid, real nu, const VectorField& a) {
         Vec<Dim, Pack> sum{};
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const auto uj = image.sticking_velocity(gather_pack<Dim>(u, j));
-          sum = along(sum, image.share * w(sqrt(dot(r, r))), difference(uj, ui));
+          sum = along(sum, image.share * w.in_float(dot(r, r)), difference(uj, ui));
         });
         store_pack(a, i, along(load_pack<Dim>(a, i), all_lanes<Pack>(factor), sum));
       });

@@ -1,0 +1,61 @@
+#pragma once
+// Water at a state, ready to go on: the one place of bench/ that knows how the solver is put together. A new
+// preconditioner, or another way of solving, is one line in the tables of water.cpp.
+
+#include <optional>
+
+#include "app/build.hpp"
+#include "bench/states.hpp"
+
+namespace greenwater::bench {
+
+/// A scene that marches like Simulation, but can be put back.
+class Water {
+ public:
+  /// As the scene begins, or as `state` left it.
+  Water(const Scene& scene, const std::optional<State>& state);
+
+  /// Back to a state of the same scene.
+  void put(const State& state);
+
+  /// One step, in a region "step". Throws NumericsError when it fails.
+  StepReport step();
+
+  State state() const;
+  double time() const { return fluid_.time; }
+  std::int64_t steps() const { return steps_; }
+  const Fluid& fluid() const { return fluid_; }
+
+ private:
+  Scene scene_;
+  Fluid fluid_;
+  Effects effects_;
+  std::unique_ptr<Scheme> scheme_;
+  std::int64_t steps_ = 0;
+};
+
+/// The fluid as the pressure solve of the next step sees it: x*, u*, n and rows between the walls of the scene and
+/// those that `cut` adds, p still that of the step before.
+Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state);
+
+/// A way to precondition, by its name in results.
+struct PreconditionerChoice {
+  std::string name;
+  bool usual;  // measured when nobody asks for it
+  std::unique_ptr<Preconditioner> (*make)();
+};
+const std::vector<PreconditionerChoice>& all_preconditioners();
+
+/// A way to solve: `option` is how it is asked for, `name` its name in results.
+struct SolverChoice {
+  std::string option, name;
+  bool usual;
+  bool keep_weights;
+};
+const std::vector<SolverChoice>& all_solvers();
+
+/// Those that are named, in that order, or the usual ones. Throws CaseError for a name that is not known.
+std::vector<PreconditionerChoice> chosen_preconditioners(const std::vector<std::string>& names);
+std::vector<SolverChoice> chosen_solvers(const std::vector<std::string>& names);
+
+}  // namespace greenwater::bench
