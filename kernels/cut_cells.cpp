@@ -50,7 +50,8 @@ void for_each_cell(const FaceCorners& corner, int dim, const GridShape& grid, F 
 
 bool CutCells::known(const WallFaces& faces, const GridShape& grid) const {
   return faces.faces.size() == faces_.size() && grid.cell == grid_.cell &&
-         std::equal(grid.cells, grid.cells + 3, grid_.cells) && std::equal(grid.origin, grid.origin + 3, grid_.origin) &&
+         std::equal(grid.cells, grid.cells + 3, grid_.cells) &&
+         std::equal(grid.origin, grid.origin + 3, grid_.origin) &&
          std::equal(faces.faces.begin(), faces.faces.end(), faces_.begin(),
                     [](const WallFace& a, const FaceCorners& b) { return corners_of(a) == b; });
 }

@@ -34,7 +34,7 @@ class Multigrid {
 
   FloatSystem system_;
   GridLevels levels_;
-  SplitNodes splits_;       // where plates are
+  SplitNodes splits_;  // where plates are
   GridShape grid_;
   IndexField first_;        // of the grid's cells
   FloatField place_[3];     // (i) of the particles, in cells from the grid's origin [-]; far away at the surface

@@ -112,15 +112,21 @@ struct Round {
   std::string_view cause;  // why it broke down; empty when it did not
 };
 
+// What a term that was added to the matrix has of q = A d, q knowing of the directions before; returns its d . q.
+accum add_term(const PressureSystem& system, const FloatSystem& matrix, const Vectors& v) {
+  return system.added() ? system.added()->add_product(matrix.inverse, 1 / system.factor(), v.z, v.d, v.q) : 0;
+}
+
 // A x = r in float, until |r| falls to `target` times what it was.
-Round solve_in_float(Multigrid& multigrid, accum target, int most, const Vectors& v) {
+Round solve_in_float(const PressureSystem& system, Multigrid& multigrid, accum target, int most, const Vectors& v) {
   const FloatSystem& matrix = multigrid.system();
   accum rz_before = 0;
   for (int k = 0; k < most; ++k) {
     const accum rz = multigrid.finish(v.r, v.first, v.z);
     if (!std::isfinite(rz)) return {k, "not a number"};
     if (rz <= 0) return {k, "the preconditioner is not positive on this residual"};
-    const accum dq = advance_direction(matrix, k == 0 ? 0.0f : static_cast<float>(rz / rz_before), v);
+    accum dq = advance_direction(matrix, k == 0 ? 0.0f : static_cast<float>(rz / rz_before), v);
+    dq += add_term(system, matrix, v);
     if (!std::isfinite(dq)) return {k, "not a number"};
     if (dq <= 0) return {k, "the matrix is not positive on this direction (a closed cluster without a free surface?)"};
     const accum rr = advance_solution(matrix, static_cast<float>(rz / dq), v);
@@ -174,7 +180,7 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
     before = residual;
     begin_round(system, multigrid.system(), Ap_, residual, v);
     const accum target = std::fmax(margin * enough / residual, least_in_float);
-    const Round done = solve_in_float(multigrid, target, options_.max_iterations - iterations, v);
+    const Round done = solve_in_float(system, multigrid, target, options_.max_iterations - iterations, v);
     iterations += done.iterations;
     if (!done.cause.empty()) return stopped(iterations, residual / b_norm, done.cause);
     add_correction(x_, residual / system.factor(), p, count);

@@ -48,11 +48,11 @@ class SplitNodes {
   CutCells cut_;
   GridShape grid_;
   int dim_ = 0;
-  Nodes nodes_;               // of the first level that may be split
+  Nodes nodes_;  // of the first level that may be split
   SplitStack stack_;
   std::vector<Fields> fields_;  // that the stack points to
-  IndexField side_;           // (particle) bit c: it is on the split's side of corner c of its cell
-  IndexField cells_;          // around the nodes
+  IndexField side_;             // (particle) bit c: it is on the split's side of corner c of its cell
+  IndexField cells_;            // around the nodes
   int cells_count_ = 0;
   FloatField inverse_;
   FloatField::HostMirror host_inverse_;
