@@ -50,7 +50,7 @@ void AddedTerm::set(int unknowns, std::vector<AddedEntry> D, const std::vector<r
   expect(C.size() == static_cast<std::size_t>(unknowns) * unknowns);
   unknowns_ = unknowns;
   if (unknowns == 0) return;
-  const auto lay_out = [&](Lists& lists, auto row_of, auto other_of, int rows) {
+  const auto lay_out = [&](AddedLists& lists, auto row_of, auto other_of, int rows) {
     std::vector<int> first(rows + 1, 0), other;
     std::vector<real> value;
     for (const AddedEntry& entry : D) {
@@ -89,7 +89,7 @@ void AddedTerm::add_product(const FlagField& fixed, const ScalarField& p, const 
   if (!any()) return;
   feel(of_unknown_.first, of_unknown_.other, of_unknown_.value, p, felt_, unknowns_);
   give_answer(C_, felt_, answer_, unknowns_);
-  const Lists D = of_particle_;
+  const AddedLists D = of_particle_;
   const auto particle = particle_;
   const auto answer = answer_;
   Kokkos::parallel_for(
@@ -105,7 +105,7 @@ accum AddedTerm::add_product(const FloatField& free, real scale, const FloatFiel
   if (!any()) return added;
   feel(of_unknown_.first, of_unknown_.other, of_unknown_.value, z, felt_, unknowns_);
   give_answer(C_, felt_, answer_, unknowns_);
-  const Lists D = of_particle_;
+  const AddedLists D = of_particle_;
   const auto particle = particle_;
   const auto answer = answer_;
   Kokkos::parallel_reduce(

@@ -15,6 +15,12 @@ struct AddedEntry {
   real value;
 };
 
+/// D by columns (other: particle) or by rows (other: unknown): entries of number k are first(k) ... first(k + 1) - 1.
+struct AddedLists {
+  IndexField first, other;
+  ScalarField value;
+};
+
 class AddedTerm {
  public:
   /// D, for particles as they are sorted now, and C(row, column), as many rows as unknowns, row by row. D C D^T has the
@@ -31,20 +37,14 @@ class AddedTerm {
                     const FloatField& q) const;
 
  private:
-  /// D by columns and by rows: entries of number k are first(k) ... first(k + 1) - 1.
-  struct Lists {
-    IndexField first, other;
-    ScalarField value;
-  };
-
   int unknowns_ = 0;
-  int touched_ = 0;      // particles with entries
-  Lists of_unknown_;     // (unknown), other: particle
-  Lists of_particle_;    // (touched), other: unknown
-  IndexField particle_;  // (touched)
-  ScalarField C_;        // (row, column)
-  ScalarField felt_;     // (unknown) D^T p
-  ScalarField answer_;   // (unknown) C D^T p
+  int touched_ = 0;  // particles with entries
+  AddedLists of_unknown_;
+  AddedLists of_particle_;  // of those touched
+  IndexField particle_;     // (touched)
+  ScalarField C_;           // (row, column)
+  ScalarField felt_;        // (unknown) D^T p
+  ScalarField answer_;      // (unknown) C D^T p
 };
 
 }  // namespace greenwater
