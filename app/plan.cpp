@@ -16,7 +16,9 @@ namespace {
 // Bytes per particle, counted from the fields: state and scratch of the sort (150), the solver's vectors (50), grid and
 // row ends (50), host copies for a frame (100); rounded up. A third axis adds eight bytes to each of eight vectors.
 constexpr double bytes_per_particle = 400, bytes_of_third_axis = 64;
-constexpr double bytes_per_neighbor = 4, bytes_per_weight = 8;
+constexpr double bytes_per_neighbor = 4, bytes_per_weight = 4;
+// The multigrid: vectors of the particles (65), windows (80), cells and levels (75); with a third axis larger stencils.
+constexpr double bytes_of_multigrid = 220, bytes_of_multigrid_third_axis = 130;
 constexpr double row_growth = 1.5;                           // rows grow ahead of need
 constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
 constexpr double frame_bytes_third_axis = 8;                 // of position and velocity; VTP has three always
@@ -30,7 +32,9 @@ double memory_of(const Scene& scene, double particles) {
   const double neighbors =
       scene.dimension == 2 ? std::numbers::pi * radius * radius : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
   const double entry = bytes_per_neighbor + (scene.mps.pressure.weights == "kept" ? bytes_per_weight : 0);
-  const double fields = bytes_per_particle + (scene.dimension == 3 ? bytes_of_third_axis : 0);
+  double fields = bytes_per_particle + (scene.dimension == 3 ? bytes_of_third_axis : 0);
+  if (scene.mps.pressure.preconditioner == "multigrid")
+    fields += bytes_of_multigrid + (scene.dimension == 3 ? bytes_of_multigrid_third_axis : 0);
   return particles * (fields + row_growth * neighbors * entry);
 }
 

@@ -1,5 +1,6 @@
 #include "bench/bytes.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/lanes.hpp"
@@ -55,8 +56,8 @@ Traffic sort(const Counts& c) {
   const double begin = 3 * cells;                                    // numbers read and written, first written
   const double fill = 2 * per_particle + 2 * cells;                  // cell read, order written, places counted up
   const double settle = cells + 2 * per_particle;                    // first; order read and written
-  const double fields = per_particle + places(c) + vectors(c) + 2 * scalars(c) + flags(c);  // id x u p n surface
-  const double reorder = 6 * per_particle + 2 * fields;  // order for each; read and written
+  const double fields = per_particle + places(c) + vectors(c) + scalars(c) + flags(c);  // id x u p surface
+  const double reorder = per_particle + 2 * fields;                                     // order; read and written
   return {find + begin + fill + settle + reorder, 2 * cells + 2 * per_particle + 2 * fields};
 }
 
@@ -70,7 +71,8 @@ Traffic build_rows(const Counts& c) {
 }
 
 Traffic gradient(const Counts& c) {
-  const double once = around(c) + scalars(c) + vectors(c);  // rows, x; p; a written
+  const double weights = c.keep_weights ? c.entries * weight : 0;
+  const double once = around(c) + weights + scalars(c) + vectors(c);  // rows, x, weights; p; a written
   return {once, once};
 }
 
@@ -80,8 +82,24 @@ Traffic assemble(const Counts& c) {
   return {diagonal + source, c.particles * sum + flags(c) + 3 * scalars(c)};
 }
 
-// One turn of conjugate gradients with the diagonal as preconditioner.
-Traffic iteration(const Counts& c) {
+Traffic sum_of(const std::vector<Traffic>& parts) {
+  Traffic all;
+  for (const Traffic& part : parts) all = {all.moved + part.moved, std::max(all.touched, part.touched)};
+  return all;
+}
+
+Traffic times(double number_of, const Traffic& once) { return {number_of * once.moved, once.touched}; }
+
+// With the diagonal as preconditioner: what is done once.
+Traffic begin_with_diagonal(const Counts& c) {
+  const Traffic product = product_traffic(c, c.keep_weights);
+  const double check = flags(c) + 2 * scalars(c);         // surface; (p, p), (b, b)
+  const double first = (3 + 3 + 2 + 3 + 1) * scalars(c);  // r = b - q; z = r / diagonal; d = z; (r, z), (r, r); max
+  return {check + product.moved + first, product.touched + 2 * scalars(c)};
+}
+
+// One turn of conjugate gradients with it.
+Traffic turn_with_diagonal(const Counts& c) {
   const Traffic product = product_traffic(c, c.keep_weights);
   const double sums = 2 * scalars(c) + scalars(c) + 2 * scalars(c) + scalars(c);  // (d, q), (d, d), (r, z), (r, r)
   const double updates = 3 * 3 * scalars(c);                                      // p + a d, r - a q, z + b d
@@ -89,11 +107,59 @@ Traffic iteration(const Counts& c) {
   return {product.moved + sums + updates + divide, product.touched + 3 * scalars(c)};
 }
 
+// The operator's rows as the multigrid reads them, and a float per particle or node.
+double float_rows(const Counts& c) { return chunks(c) + c.places * (index + weight); }
+double floats(const Counts& c) { return c.particles * weight; }
+
+constexpr double window = 16;  // nodes that a particle's row of A P reaches in a layer
+double stencil(const Counts& c) { return c.dim == 2 ? 25 : 125; }
+
+double corners(const Counts& c) { return c.dim == 2 ? 4 : 8; }  // of a cell
+double node_floats(const Counts& c) { return c.first_nodes * weight; }
+
+// P^T A P of all levels. In 3-D the first one is made in four layers, each of which adds to two planes of the stencils.
+Traffic set_up_multigrid(const Counts& c) {
+  const double layers = c.dim == 2 ? 1 : 4, planes = c.dim == 2 ? 1 : 11;  // written, and read when added to
+  const double seats =
+      places(c) + flags(c) + scalars(c) + (2 + c.dim) * floats(c);          // x surface diagonal; A, 1/A, place
+  const double find = c.cells * index + floats(c);                          // first; place
+  const double windows = float_rows(c) + (c.dim + 1 + window) * floats(c);  // rows; place, A; window written
+  const double cells = c.cells * index + (window + c.dim) * floats(c);      // first; window, place
+  const double parts = 2 * corners(c) * window * node_floats(c);            // of the cells, written and read
+  const double collect = planes * 25 * node_floats(c);
+  const double coarsen = stencil(c) * weight * (3 * c.nodes - c.first_nodes);  // fine read, coarse written; smoother
+  return {seats + find + layers * (windows + cells + parts) + collect + coarsen,
+          float_rows(c) + (2 + c.dim + window) * floats(c) + (corners(c) * window) * node_floats(c) +
+              stencil(c) * c.nodes * weight};
+}
+
+// One turn of conjugate gradients in float: three sums over rows and a V cycle.
+Traffic turn_with_multigrid(const Counts& c) {
+  const double first = 3 * floats(c);                              // 1/A, z; t written
+  const double down = c.cells * index + (c.dim + 1) * floats(c) +  // first; place, t
+                      (2 * corners(c) + 3) * node_floats(c);       // parts written and read; relax, b, x
+  const double levels = (2 * stencil(c) + 15) * c.nodes * weight;  // two stencils; 3 + 4 + 4 + 4 vectors
+  const double up = (c.dim + 3) * floats(c) + node_floats(c);      // place, 1/A, z read and written; y
+  const double last = 4 * floats(c);                               // 1/A, r, z; z' written
+  const double direction = 6 * floats(c);                          // z, A; d, q read and written
+  const double solution = 8 * floats(c);                           // d, q, 1/A; x, r read and written; z written
+  return {3 * float_rows(c) + first + down + levels + up + last + direction + solution,
+          float_rows(c) + (8 + c.dim) * floats(c) + corners(c) * node_floats(c) + (stencil(c) + 4) * c.nodes * weight};
+}
+
+// A round begins with r = b - A p in full precision; p + x ends it.
+Traffic around_rounds(const Counts& c) {
+  const Traffic product = product_traffic(c, true);
+  const double check = flags(c) + 2 * scalars(c);  // surface; (p, p), (b, b)
+  const double norm = 2 * scalars(c);              // b, A p
+  const double begin = 2 * scalars(c) + 6 * floats(c), end = 2 * scalars(c) + floats(c);
+  return {check + c.products * (product.moved + norm) + c.rounds * (begin + end), product.touched + scalars(c)};
+}
+
 Traffic pressure(const Counts& c) {
-  const Traffic first = assemble(c), turn = iteration(c), product = product_traffic(c, c.keep_weights);
-  // surface; (b, b); r = b - q; z = r / diagonal; d = z; (r, z), (r, r); largest diagonal
-  const double begin = flags(c) + product.moved + (1 + 3 + 3 + 2 + 3 + 1) * scalars(c);
-  return {first.moved + begin + c.iterations * turn.moved, turn.touched + scalars(c)};
+  if (c.multigrid)
+    return sum_of({assemble(c), set_up_multigrid(c), around_rounds(c), times(c.iterations, turn_with_multigrid(c))});
+  return sum_of({assemble(c), begin_with_diagonal(c), times(c.iterations, turn_with_diagonal(c))});
 }
 
 }  // namespace

@@ -40,12 +40,11 @@ struct Problem {
 
 struct Variant {
   Problem* problem;
-  Preconditioner* preconditioner;
-  ConjugateGradient* cg;
+  TimedSolver* solver;
   std::string name, guess;  // of the preconditioner, of the start
   double tolerance;
-  std::vector<double> setup_ms, solve_ms, ms;
-  SolveReport report;
+  std::vector<double> setup_ms = {}, solve_ms = {}, ms = {};
+  SolveReport report = {};
   double residual = 0;  // |b - A p| / |b|, computed anew at the end
 };
 
@@ -65,9 +64,6 @@ class Comparison {
     for (const SolverChoice& solver : chosen_solvers(options.solvers))
       problems_.push_back(std::make_unique<Problem>(fluid_, solver, equation, scene.mps.time_step));
     tolerances_ = options.tolerances.empty() ? std::vector{1e-4, 1e-6, 1e-8} : options.tolerances;
-    for (const double tolerance : tolerances_)
-      cg_.push_back(std::make_unique<ConjugateGradient>(
-          CgOptions{.tolerance = static_cast<real>(tolerance), .max_iterations = 20'000}));
     for (const PreconditionerChoice& choice : chosen_preconditioners(options.preconditioners)) add(choice);
   }
 
@@ -99,37 +95,30 @@ class Comparison {
  private:
   void add(const PreconditionerChoice& choice) {
     for (auto& problem : problems_) {
-      preconditioners_.push_back(choice.make());
+      if (choice.only_kept && !problem->solver.keep_weights) continue;
+      const std::size_t first = solvers_.size();
+      for (const double tolerance : tolerances_)
+        solvers_.push_back(choice.make({.tolerance = static_cast<real>(tolerance), .max_iterations = 20'000}));
       for (const char* guess : {"zero", "previous"})
-        for (std::size_t k = 0; k < cg_.size(); ++k)
-          variants_.push_back({problem.get(),
-                               preconditioners_.back().get(),
-                               cg_[k].get(),
-                               choice.name,
-                               guess,
-                               tolerances_[k],
-                               {},
-                               {},
-                               {},
-                               {},
-                               0});
+        for (std::size_t k = 0; k < tolerances_.size(); ++k)
+          variants_.push_back({problem.get(), solvers_[first + k].get(), choice.name, guess, tolerances_[k]});
     }
   }
 
   // All that is allocated at first use is, and the caches know the rows.
   void warm_up() {
     for (Variant& variant : variants_) {
-      variant.preconditioner->update(variant.problem->system);
+      variant.solver->set_up(variant.problem->system);
       if (&variant == &variants_.front()) Kokkos::deep_copy(p_, previous_);
-      variant.cg->solve(variant.problem->system, *variant.preconditioner, p_);  // from the solution before: short
+      variant.solver->solve(variant.problem->system, p_);  // from the solution before: short
     }
   }
 
   void measure(Variant& v) {
     const PressureSystem& system = v.problem->system;
     v.guess == "zero" ? Kokkos::deep_copy(p_, real(0)) : Kokkos::deep_copy(p_, previous_);
-    v.setup_ms.push_back(ms_of([&] { v.preconditioner->update(system); }));
-    v.solve_ms.push_back(ms_of([&] { v.report = v.cg->solve(system, *v.preconditioner, p_); }));
+    v.setup_ms.push_back(ms_of([&] { v.solver->set_up(system); }));
+    v.solve_ms.push_back(ms_of([&] { v.report = v.solver->solve(system, p_); }));
     v.ms.push_back(v.setup_ms.back() + v.solve_ms.back());
     v.residual = residual(system);
   }
@@ -146,8 +135,7 @@ class Comparison {
   ScalarField p_, previous_, work_;
   std::vector<double> tolerances_;
   std::vector<std::unique_ptr<Problem>> problems_;
-  std::vector<std::unique_ptr<Preconditioner>> preconditioners_;
-  std::vector<std::unique_ptr<ConjugateGradient>> cg_;
+  std::vector<std::unique_ptr<TimedSolver>> solvers_;
   std::vector<Variant> variants_;
 };
 

@@ -21,6 +21,7 @@ struct Overview {
   double launches = 0, memory = 0;  // memory [bytes] as views hold it
   std::map<std::string, double> launches_by_label;
   std::vector<double> iterations;  // of each step
+  int recoveries = 0;              // solves that needed help
 };
 
 using Samples = std::map<std::string, std::vector<double>>;  // region -> [ms]
@@ -44,6 +45,11 @@ void add_rows(const Fluid& fluid, double part, Counts& counts) {
   counts.image_places += part * static_cast<double>(fluid.rows.images.stored);
 }
 
+void add_nodes(const GridNodes& nodes, Counts& counts) {
+  counts.first_nodes = nodes.first;
+  counts.nodes = nodes.all;
+}
+
 Overview look(Water& water, Listener& listener, int steps) {
   Overview overview;
   const double part = 1.0 / steps;
@@ -52,12 +58,15 @@ Overview look(Water& water, Listener& listener, int steps) {
     const StepReport report = water.step();
     overview.iterations.push_back(report.solve.iterations);
     overview.counts.iterations += part * report.solve.iterations;
+    overview.recoveries += report.solve.recovery.empty() ? 0 : 1;
     add_rows(water.fluid(), part, overview.counts);
   }
   overview.launches = part * static_cast<double>(listener.launches());
   overview.memory = static_cast<double>(listener.bytes());
   for (const auto& [label, number] : listener.launches_by_label())
     overview.launches_by_label[label] = part * static_cast<double>(number);
+  overview.counts.rounds = part * static_cast<double>(listener.launches("greenwater::cg_begin_round"));
+  overview.counts.products = part * static_cast<double>(listener.launches("greenwater::apply_pressure"));
   overview.counts.collision_looks = part * static_cast<double>(listener.launches("greenwater::count_collisions"));
   overview.counts.collision_moves = part * static_cast<double>(listener.launches("greenwater::collision"));
   return overview;
@@ -151,6 +160,7 @@ void add_overview(Json& row, const Scene& scene, const Overview& overview) {
   row["iterations"] = iterations.median;
   row["iterations_min"] = iterations.low;
   row["iterations_max"] = iterations.high;
+  row["recoveries"] = overview.recoveries;
   row["launches"] = overview.launches;
   row["memory"] = overview.memory;
   row["memory_per_particle"] = overview.memory / overview.counts.particles;
@@ -190,6 +200,8 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
     Water water(scene, state);
     overview = look(water, *listener, options.steps);
     listener.reset();  // who is timed is not listened to
+    overview.counts.multigrid = scene.mps.pressure.preconditioner == "multigrid";
+    if (overview.counts.multigrid) add_nodes(nodes_in_use(water.fluid()), overview.counts);
     for (int round = 0; round < options.rounds; ++round) {
       water.put(state);
       time_round(water, options.steps, samples);

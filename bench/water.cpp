@@ -4,6 +4,7 @@
 #include "io/suggest.hpp"
 #include "kernels/density.hpp"
 #include "kernels/motion.hpp"
+#include "kernels/refined_cg.hpp"
 
 namespace greenwater::bench {
 namespace {
@@ -53,6 +54,38 @@ void put_particles(const State& state, const Scene& scene, Fluid& fluid) {
   mark_surface(fluid, static_cast<real>(scene.mps.free_surface_ratio));
 }
 
+template <auto make_preconditioner>
+class Plain : public TimedSolver {
+ public:
+  explicit Plain(const CgOptions& options) : preconditioner_(make_preconditioner()), cg_(options) {}
+  void set_up(const PressureSystem& system) override { preconditioner_->update(system); }
+  SolveReport solve(const PressureSystem& system, const ScalarField& p) override {
+    return cg_.solve(system, *preconditioner_, p);
+  }
+
+ private:
+  std::unique_ptr<Preconditioner> preconditioner_;
+  ConjugateGradient cg_;
+};
+
+class WithMultigrid : public TimedSolver {
+ public:
+  explicit WithMultigrid(const CgOptions& options) : cg_(options) {}
+  void set_up(const PressureSystem& system) override { multigrid_.update(system); }
+  SolveReport solve(const PressureSystem& system, const ScalarField& p) override {
+    return cg_.solve(system, multigrid_, p);
+  }
+
+ private:
+  Multigrid multigrid_;
+  RefinedCg cg_;
+};
+
+template <class Solver>
+std::unique_ptr<TimedSolver> made(const CgOptions& options) {
+  return std::make_unique<Solver>(options);
+}
+
 template <class Choice>
 std::vector<Choice> chosen(const std::vector<Choice>& all, const std::vector<std::string>& names,
                            std::string Choice::*name, const std::string& what) {
@@ -73,7 +106,12 @@ std::vector<Choice> chosen(const std::vector<Choice>& all, const std::vector<std
 }  // namespace
 
 const std::vector<PreconditionerChoice>& all_preconditioners() {
-  static const std::vector<PreconditionerChoice> all{{"jacobi", true, make_jacobi}, {"none", false, make_identity}};
+  // clang-format off
+  static const std::vector<PreconditionerChoice> all{
+      {"jacobi", true, false, made<Plain<make_jacobi>>},
+      {"multigrid", true, true, made<WithMultigrid>},
+      {"none", false, false, made<Plain<make_identity>>}};
+  // clang-format on
   return all;
 }
 
@@ -129,6 +167,19 @@ State Water::state() const {
   state.velocity = vector_of(p.velocity, p.count, p.dim);
   state.pressure = scalar_of<double>(p.pressure, p.count);
   return state;
+}
+
+GridNodes nodes_in_use(const Fluid& fluid) {
+  GridNodes nodes;
+  if (!fluid.keep_weights) return nodes;
+  PressureSystem system({});
+  system.assemble(fluid, 1);
+  Multigrid multigrid;
+  multigrid.update(system);
+  const LevelStack& stack = multigrid.levels().stack();
+  for (int l = 0; l < stack.count; ++l) nodes.all += stack.level[l].active * node_lanes;
+  nodes.first = stack.level[0].active * node_lanes;
+  return nodes;
 }
 
 Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state) {

@@ -34,15 +34,31 @@ class Water {
   std::int64_t steps_ = 0;
 };
 
+/// Nodes that the multigrid would have in use for this fluid: those of its first level, and of all.
+struct GridNodes {
+  double first = 0, all = 0;
+};
+GridNodes nodes_in_use(const Fluid& fluid);
+
 /// The fluid as the pressure solve of the next step sees it: x*, u*, n and rows between the walls of the scene and
 /// those that `cut` adds, p still that of the step before.
 Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state);
 
+/// A solver whose two parts are timed apart.
+class TimedSolver {
+ public:
+  virtual ~TimedSolver() = default;
+  /// What it has to do once for each system.
+  virtual void set_up(const PressureSystem& system) = 0;
+  virtual SolveReport solve(const PressureSystem& system, const ScalarField& p) = 0;
+};
+
 /// A way to precondition, by its name in results.
 struct PreconditionerChoice {
   std::string name;
-  bool usual;  // measured when nobody asks for it
-  std::unique_ptr<Preconditioner> (*make)();
+  bool usual;      // measured when nobody asks for it
+  bool only_kept;  // it needs the weights beside the rows
+  std::unique_ptr<TimedSolver> (*make)(const CgOptions&);
 };
 const std::vector<PreconditionerChoice>& all_preconditioners();
 

@@ -11,8 +11,8 @@
 
 #include "core/fields.hpp"
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && !defined(GREENWATER_BOUNDS) && \
-    !defined(GREENWATER_PLAIN_LANES)
+#if defined(GREENWATER_HOST_ONLY) && defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__) && \
+    !defined(GREENWATER_BOUNDS) && !defined(GREENWATER_PLAIN_LANES)
 #define GREENWATER_VECTORS 1
 #include <immintrin.h>
 #endif

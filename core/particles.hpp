@@ -45,7 +45,7 @@ class Reorder {
   void apply(Particles& particles, const IndexField& order, int kept);
 
  private:
-  Particles other_;    // where the fields go; then the two change places
+  Particles other_;  // where the fields go; then the two change places
   VectorField extra_;
 };
 

@@ -28,7 +28,7 @@ class CutCells {
   GridShape grid_;
   std::vector<Cut> cut_;
   std::vector<std::array<int, 3>> nodes_;
-  IndexField::HostMirror first_;
+  IndexField::host_mirror_type first_;
 };
 
 }  // namespace greenwater

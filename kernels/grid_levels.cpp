@@ -240,8 +240,8 @@ struct Unknowns {
     int i, j, k, value, position, stencil;
   };
   std::array<Node, coarsest_nodes> node;
-  std::array<int, coarsest_nodes> number;  // (node of the level) of the unknown, or -1
-  int count = 0;
+  std::vector<int> number;  // (node of the level) of the unknown, or -1
+  int count = 0;            // more than there is room for: the level is too large to be the last
 };
 
 int node_number(const Level& level, int i, int j, int k) { return (k * level.nodes[1] + j) * level.nodes[0] + i; }
@@ -255,7 +255,7 @@ float own_entry(const Level& level, int value, int size) {
 Unknowns unknowns_of(const Level& level, int size) {
   constexpr float hardly = 1e-4f;
   Unknowns found;
-  found.number.fill(-1);
+  found.number.assign(static_cast<std::size_t>(level.nodes[0]) * level.nodes[1] * level.nodes[2], -1);
   float most = 0;
   for (int value = node_lanes; value < (level.active + 1) * node_lanes; ++value)
     most = std::max(most, own_entry(level, value, size));
@@ -265,6 +265,7 @@ Unknowns unknowns_of(const Level& level, int size) {
       const Unknowns::Node node = {pack.i + lane,      pack.j, pack.k, pack.value + lane, pack.position + lane,
                                    pack.stencil + lane};
       if (!(own_entry(level, node.value, size) > hardly * most)) continue;
+      if (found.count == coarsest_nodes) return {{}, {}, coarsest_nodes + 1};
       found.number[node_number(level, node.i, node.j, node.k)] = found.count;
       found.node[found.count++] = node;
     }
@@ -334,9 +335,9 @@ void GridLevels::resize(const GridShape& grid, int dim) {
   dim_ = dim;
   fields_.assign(most_levels, {});
   int nodes[3] = {grid.cells[0] + 1, grid.cells[1] + 1, dim == 3 ? grid.cells[2] + 1 : 1};
-  for (stack_.count = 0;;) {
-    expect(stack_.count < most_levels);
-    make_level(stack_.count++, nodes);
+  for (levels_ = 0;;) {
+    expect(levels_ < most_levels);
+    make_level(levels_++, nodes);
     if (static_cast<double>(nodes[0]) * nodes[1] * nodes[2] <= coarsest_nodes) break;
     for (int d = 0; d < dim; ++d) nodes[d] = nodes[d] / 2 + 1;
   }
@@ -346,13 +347,11 @@ void GridLevels::resize(const GridShape& grid, int dim) {
 
 // What the host reads and writes of the last level each step.
 void GridLevels::make_last() {
-  Fields& last = fields_[stack_.count - 1];
-  grow_values(stack_.count - 1, packs_of(stack_.level[stack_.count - 1]));
+  host_pack_.assign(levels_, {});
+  host_stencil_.assign(levels_, {});
   inverse_ = uncleared<FloatField>("greenwater::grid_inverse", coarsest_nodes * coarsest_nodes);
   last_value_ = uncleared<IndexField>("greenwater::grid_last_value", coarsest_nodes);
   last_position_ = uncleared<IndexField>("greenwater::grid_last_position", coarsest_nodes);
-  host_pack_ = Kokkos::create_mirror_view(last.pack);
-  host_stencil_ = Kokkos::create_mirror_view(last.stencil);
   host_inverse_ = Kokkos::create_mirror_view(inverse_);
   host_value_ = Kokkos::create_mirror_view(last_value_);
   host_position_ = Kokkos::create_mirror_view(last_position_);
@@ -374,35 +373,45 @@ void GridLevels::grow_values(int l, int slots) {
 }
 
 void GridLevels::activate() {
-  small_ = stack_.count - 1;
-  for (int l = 0; l < stack_.count; ++l) {
+  for (int l = 0; l < levels_; ++l) {
     Level& level = stack_.level[l];
     forget(level);
     if (l > 0) want_coarse(stack_.level[l - 1], level, wanted_);
     level.active = number_wanted(level, wanted_);
     grow_values(l, level.active);
-    if (level.active * node_lanes <= small_nodes) small_ = std::min(small_, l);
   }
 }
 
+// The last level is the first one whose nodes with fluid are few: on coarser ones, whose hats are wider than the fluid, the
+// corrections would be worse.
 void GridLevels::coarsen() {
   const bool flat = dim_ == 2;
-  for (int l = 0; l < stack_.count; ++l) {
+  for (int l = 0; l < levels_; ++l) {
     const Level& level = stack_.level[l];
     if (l > 0) flat ? contract<2>(stack_.level[l - 1], level) : contract<3>(stack_.level[l - 1], level);
     flat ? weigh_smoother<2>(level) : weigh_smoother<3>(level);
+    stack_.count = l + 1;
+    if (level.active * node_lanes <= small_nodes && invert_last()) break;
   }
-  invert_last();
+  small_ = stack_.count - 1;
+  for (int l = stack_.count - 1; l >= 0; --l)
+    if (stack_.level[l].active * node_lanes <= small_nodes) small_ = l;
 }
 
-void GridLevels::invert_last() {
-  Level last = stack_.level[stack_.count - 1];
-  const Fields& fields = fields_[stack_.count - 1];
-  Kokkos::deep_copy(host_pack_, fields.pack);
-  Kokkos::deep_copy(host_stencil_, fields.stencil);
-  last.pack = host_pack_.data();
-  last.stencil = host_stencil_.data();
+// False when the level has more nodes with fluid than can be solved directly.
+bool GridLevels::invert_last() {
+  const int l = stack_.count - 1;
+  Level last = stack_.level[l];
+  const Fields& fields = fields_[l];
+  if (host_pack_[l].extent(0) != fields.pack.extent(0)) host_pack_[l] = Kokkos::create_mirror_view(fields.pack);
+  if (host_stencil_[l].extent(0) != fields.stencil.extent(0))
+    host_stencil_[l] = Kokkos::create_mirror_view(fields.stencil);
+  Kokkos::deep_copy(host_pack_[l], fields.pack);
+  Kokkos::deep_copy(host_stencil_[l], fields.stencil);
+  last.pack = host_pack_[l].data();
+  last.stencil = host_stencil_[l].data();
   const Unknowns unknowns = unknowns_of(last, stencil_size(dim_));
+  if (unknowns.count > coarsest_nodes) return false;
   DenseMatrix matrix = matrix_of(last, unknowns, dim_);
   invert_in_place(matrix.data(), unknowns.count);
   stack_.unknowns = unknowns.count;
@@ -414,6 +423,7 @@ void GridLevels::invert_last() {
   Kokkos::deep_copy(last_value_, host_value_);
   Kokkos::deep_copy(last_position_, host_position_);
   Kokkos::deep_copy(inverse_, host_inverse_);
+  return true;
 }
 
 void GridLevels::cycle() const { dim_ == 2 ? cycle_in<2>(stack_, small_) : cycle_in<3>(stack_, small_); }

@@ -9,8 +9,8 @@
 
 namespace greenwater {
 
-constexpr int most_levels = 16;     // enough for 2^15 nodes along an axis
-constexpr int coarsest_nodes = 64;  // solved directly from here on
+constexpr int most_levels = 16;      // enough for 2^15 nodes along an axis
+constexpr int coarsest_nodes = 128;  // with fluid: solved directly from here on
 
 /// Levels as kernels take them, by value.
 struct LevelStack {
@@ -54,7 +54,7 @@ class GridLevels {
   void make_level(int l, const int (&nodes)[3]);
   void make_last();
   void grow_values(int l, int slots);
-  void invert_last();
+  bool invert_last();
 
   GridShape grid_;
   int dim_ = 0;
@@ -63,9 +63,12 @@ class GridLevels {
   IndexField wanted_;
   FloatField inverse_;
   IndexField last_value_, last_position_;
-  IndexField::HostMirror host_pack_, host_value_, host_position_;
-  FloatField::HostMirror host_stencil_, host_inverse_;
-  int small_ = 0;  // first of the levels that one launch does together
+  std::vector<IndexField::host_mirror_type> host_pack_;  // of each level that is small enough to be the last
+  std::vector<FloatField::host_mirror_type> host_stencil_;
+  IndexField::host_mirror_type host_value_, host_position_;
+  FloatField::host_mirror_type host_inverse_;
+  int levels_ = 0;  // that there are; those of the stack are in use
+  int small_ = 0;   // first of the levels that one launch does together
 };
 
 }  // namespace greenwater

@@ -100,7 +100,7 @@ template <int Dim>
 struct Images {
   static constexpr bool mirrored = true;
   Image<Dim> image[pack_lanes];
-  Pack share{};  // with which each counts in every sum
+  Pack share{};       // with which each counts in every sum
   bool kept = false;  // weights are rounded like those of the rows: a mirror image balances its original
 
   /// share w(r), from r^2 [m^2].

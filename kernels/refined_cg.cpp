@@ -9,12 +9,11 @@
 namespace greenwater {
 namespace {
 
-constexpr accum least_in_float = 1e-5;  // what a round in float can reduce the residual to
-constexpr accum margin = 0.95;          // a round aims a little lower than the loop around it
-constexpr accum stall = 0.5;            // a round that leaves more than this of the residual has met its rounding
+constexpr accum stall = 0.5;  // a round that leaves more than this of the residual has met its rounding
 
 struct Vectors {
-  FloatField r, first, z, d, q, x;
+  ScalarField r, d, q;         // residual, direction, A d
+  FloatField rough, first, z;  // r in float, rough / diagonal, M rough
 };
 
 void hold_surface(const FlagField& fixed, const ScalarField& p, int count) {
@@ -29,89 +28,54 @@ void clear(const ScalarField& p, int count) {
       "greenwater::clear_pressure", Range(0, count), KOKKOS_LAMBDA(const int i) { p(i) = 0; });
 }
 
-// |b - A p|
-accum residual_norm(const PressureSystem& system, const ScalarField& Ap) {
+// r = b - A p (A p in q), rough = r / scale, first = rough / diagonal, d = 0; returns r . r. Beyond the last particle all
+// are 0.
+accum begin(const PressureSystem& system, const FloatSystem& matrix, const Vectors& v) {
   const auto b = Read<ScalarField>(system.rhs());
-  accum square = 0;
-  Kokkos::parallel_reduce(
-      "greenwater::residual_norm", Range(0, system.count()),
-      KOKKOS_LAMBDA(const int i, accum& sum) {
-        const accum r = b(i) - Ap(i);
-        sum += r * r;
-      },
-      square);
-  return std::sqrt(square);
-}
-
-// r = (b - A p) / norm, first = r / diagonal, x = d = q = 0. Beyond the last particle all are 0.
-void begin_round(const PressureSystem& system, const FloatSystem& matrix, const ScalarField& Ap, accum norm,
-                 const Vectors& v) {
-  const auto b = Read<ScalarField>(system.rhs());
-  const auto inverse = Read<FloatField>(matrix.inverse);
   const int count = system.count();
-  const auto w = v;
-  Kokkos::parallel_for(
-      "greenwater::cg_begin_round", Range(0, padded(count)), KOKKOS_LAMBDA(const int i) {
-        const float r = i < count ? static_cast<float>((b(i) - Ap(i)) / norm) : 0.0f;
-        w.r(i) = r;
-        w.first(i) = inverse(i) * r;
-        w.x(i) = w.d(i) = w.q(i) = 0;
-      });
-}
-
-// d = z + beta d, and with it q = A z + beta q = A d; returns d . q and d . d.
-accum advance_direction(const FloatSystem& matrix, float beta, const Vectors& v) {
-  const auto rows = matrix.rows;
-  const auto diagonal = Read<FloatField>(matrix.diagonal);
-  const auto w = v;
-  accum dq = 0;
-  Kokkos::parallel_reduce(
-      "greenwater::cg_advance_direction", row_packs(matrix.count),
-      KOKKOS_LAMBDA(const int pack, accum& sum) {
-        const int i = pack * float_lanes;
-        const FloatPack z = load_lanes<FloatPack>(&w.z(i)), own = load_lanes<FloatPack>(&diagonal(i));
-        const FloatPack Az = zero_unless(own != 0.0f, own * z - row_product<FloatPack>(rows, w.z.data(), i));
-        const FloatPack d = z + beta * load_lanes<FloatPack>(&w.d(i));
-        const FloatPack q = Az + beta * load_lanes<FloatPack>(&w.q(i));
-        store_lanes(&w.d(i), d);
-        store_lanes(&w.q(i), q);
-        sum += sum_lanes(d * q);
-      },
-      dq);
-  return dq;
-}
-
-// x = x + alpha d, r = r - alpha q, first = r / diagonal; returns r . r.
-accum advance_solution(const FloatSystem& matrix, float alpha, const Vectors& v) {
-  const auto inverse = Read<FloatField>(matrix.inverse);
   const auto w = v;
   accum rr = 0;
   Kokkos::parallel_reduce(
-      "greenwater::cg_advance_solution", row_packs(matrix.count),
-      KOKKOS_LAMBDA(const int pack, accum& sum) {
-        const int i = pack * float_lanes;
-        store_lanes(&w.x(i), load_lanes<FloatPack>(&w.x(i)) + alpha * load_lanes<FloatPack>(&w.d(i)));
-        const FloatPack r = load_lanes<FloatPack>(&w.r(i)) - alpha * load_lanes<FloatPack>(&w.q(i));
-        store_lanes(&w.r(i), r);
-        store_lanes(&w.first(i), load_lanes<FloatPack>(&inverse(i)) * r);
-        sum += sum_lanes(r * r);
+      "greenwater::cg_begin", Range(0, padded(count)),
+      KOKKOS_LAMBDA(const int i, accum& sum) {
+        const real r = i < count ? b(i) - w.q(i) : real(0);
+        w.r(i) = r;
+        w.d(i) = 0;
+        sum += accum(r) * r;
       },
       rr);
+  const auto inverse = Read<FloatField>(matrix.inverse);
+  const real scale = rr > 0 ? static_cast<real>(1 / std::sqrt(rr)) : real(0);
+  Kokkos::parallel_for(
+      "greenwater::cg_round", Range(0, padded(count)), KOKKOS_LAMBDA(const int i) {
+        w.rough(i) = static_cast<float>(scale * w.r(i));
+        w.first(i) = inverse(i) * w.rough(i);
+      });
   return rr;
 }
 
-// p = p + scale x
-void add_correction(const FloatField& x, accum scale, const ScalarField& p, int count) {
-  const real s = static_cast<real>(scale);
+// d = z + beta d
+void advance_direction(real beta, int count, const Vectors& v) {
+  const auto w = v;
   Kokkos::parallel_for(
-      "greenwater::cg_add_correction", Range(0, count), KOKKOS_LAMBDA(const int i) { p(i) += s * x(i); });
+      "greenwater::cg_advance_direction", packs(count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const Pack z = convert_lanes<Pack>(load_pack(w.z, i));
+        store_lanes(&w.d(i), z + beta * load_pack(w.d, i));
+      });
 }
 
-struct Round {
-  int iterations = 0;
-  std::string_view cause;  // why it broke down; empty when it did not
-};
+// d . q
+accum direction_energy(int count, const Vectors& v) {
+  const auto w = v;
+  accum dq = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::cg_direction_energy", Range(0, count),
+      KOKKOS_LAMBDA(const int i, accum& sum) { sum += accum(w.d(i)) * w.q(i); }, dq);
+  return dq;
+}
 
+<<<<<<< HEAD
 // What a term that was added to the matrix has of q = A d, q knowing of the directions before; returns its d . q.
 accum add_term(const PressureSystem& system, const FloatSystem& matrix, const Vectors& v) {
   return system.added() ? system.added()->add_product(matrix.inverse, 1 / system.factor(), v.z, v.d, v.q) : 0;
@@ -135,6 +99,26 @@ Round solve_in_float(const PressureSystem& system, Multigrid& multigrid, accum t
     rz_before = rz;
   }
   return {most, {}};
+=======
+// p = p + alpha d, r = r - alpha q, rough = scale r, first = rough / diagonal; returns r . r.
+accum advance_solution(const FloatSystem& matrix, real alpha, real scale, const ScalarField& p, const Vectors& v) {
+  const auto inverse = Read<FloatField>(matrix.inverse);
+  const auto w = v;
+  const int count = matrix.count;
+  accum rr = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::cg_advance_solution", Range(0, count),
+      KOKKOS_LAMBDA(const int i, accum& sum) {
+        p(i) += alpha * w.d(i);
+        const real r = w.r(i) - alpha * w.q(i);
+        w.r(i) = r;
+        w.rough(i) = static_cast<float>(scale * r);
+        w.first(i) = inverse(i) * w.rough(i);
+        sum += accum(r) * r;
+      },
+      rr);
+  return rr;
+>>>>>>> helper-mg
 }
 
 SolveReport stopped(int iterations, accum residual, std::string_view cause) {
@@ -146,20 +130,19 @@ SolveReport stopped(int iterations, accum residual, std::string_view cause) {
 void RefinedCg::grow(int count) {
   const std::size_t room = padded(count) + float_lanes;
   if (r_.extent(0) >= room) return;
-  const auto made = [&](const std::string& label) { return FloatField(label, room + room / 4); };
-  Ap_ = ScalarField("greenwater::cg_product", room + room / 4);
-  r_ = made("greenwater::cg_residual");
-  first_ = made("greenwater::cg_first_sweep");
-  z_ = made("greenwater::cg_preconditioned");
-  d_ = made("greenwater::cg_direction");
-  q_ = made("greenwater::cg_direction_product");
-  x_ = made("greenwater::cg_correction");
+  const auto size = room + room / 4;
+  r_ = ScalarField("greenwater::cg_residual", size);
+  d_ = ScalarField("greenwater::cg_direction", size);
+  q_ = ScalarField("greenwater::cg_product", size);
+  rough_ = FloatField("greenwater::cg_rough_residual", size);
+  first_ = FloatField("greenwater::cg_first_sweep", size);
+  z_ = FloatField("greenwater::cg_preconditioned", size);
 }
 
 SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid, const ScalarField& p) {
   const int count = system.count();
   grow(count);
-  const Vectors v = {r_, first_, z_, d_, q_, x_};
+  const Vectors v = {r_, d_, q_, rough_, first_, z_};
   hold_surface(system.fixed(), p, count);
   const accum b_norm = std::sqrt(blas::dot(system.rhs(), system.rhs(), count));
   if (!std::isfinite(b_norm)) return stopped(0, b_norm, "not a number");
@@ -168,8 +151,8 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
     return {};
   }
   const accum enough = std::fmax(options_.tolerance * b_norm, static_cast<accum>(options_.absolute));
-  int iterations = 0;
   accum before = std::numeric_limits<accum>::infinity();
+<<<<<<< HEAD
   for (;;) {
     system.apply(p, Ap_);
     const accum residual = residual_norm(system, Ap_);
@@ -184,6 +167,35 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
     iterations += done.iterations;
     if (!done.cause.empty()) return stopped(iterations, residual / b_norm, done.cause);
     add_correction(x_, residual / system.factor(), p, count);
+=======
+  for (int k = 0;;) {
+    system.apply(p, q_);  // what the iterations say of r is checked at the end of each round
+    const accum start = std::sqrt(begin(system, multigrid.system(), v));
+    if (!std::isfinite(start)) return stopped(k, start / b_norm, "not a number");
+    if (start <= enough) return {k, static_cast<real>(start / b_norm), true, "converged"};
+    if (k >= options_.max_iterations) return stopped(k, start / b_norm, "too many iterations");
+    if (start > stall * before) return stopped(k, start / b_norm, "the residual no longer falls");
+    before = start;
+    accum residual = start, rz_before = 0;
+    while (residual > enough && k < options_.max_iterations) {
+      const accum rz = start * multigrid.finish(rough_, first_, z_);  // z = M r, r . z
+      if (!std::isfinite(rz)) return stopped(k, residual / b_norm, "not a number");
+      if (rz <= 0) return stopped(k, residual / b_norm, "the preconditioner is not positive on this residual");
+      advance_direction(rz_before > 0 ? static_cast<real>(rz / rz_before) : real(0), count, v);
+      system.apply(d_, q_);
+      const accum dq = direction_energy(count, v);
+      if (!std::isfinite(dq)) return stopped(k, residual / b_norm, "not a number");
+      if (dq <= 0)
+        return stopped(k, residual / b_norm,
+                       "the matrix is not positive on this direction (a closed cluster without a free surface?)");
+      const accum rr =
+          advance_solution(multigrid.system(), static_cast<real>(rz / dq), static_cast<real>(1 / start), p, v);
+      ++k;
+      if (!std::isfinite(rr)) return stopped(k, residual / b_norm, "not a number");
+      residual = std::sqrt(rr);
+      rz_before = rz;
+    }
+>>>>>>> helper-mg
   }
 }
 

@@ -55,7 +55,7 @@ class SplitNodes {
   IndexField cells_;            // around the nodes
   int cells_count_ = 0;
   FloatField inverse_;
-  FloatField::HostMirror host_inverse_;
+  FloatField::host_mirror_type host_inverse_;
   std::vector<double> dense_;
 };
 

@@ -171,7 +171,7 @@ TEST_CASE("bytes of four particles in a line, counted by hand", "[unit][bench]")
   CHECK(traffic_in("rows", counts).moved ==
         x + 10 * 4 + chunk + numbers + sums + 4 * row_lanes * (4 + 4) + images + scalar);
   CHECK(traffic_in("viscosity", counts).moved == around + vector + 2 * vector);
-  CHECK(traffic_in("gradient", counts).moved == around + scalar + vector);
+  CHECK(traffic_in("gradient", counts).moved == around + 6 * 4 + scalar + vector);
   CHECK(product_traffic(counts, false).moved == around + surface + 3 * scalar);
   const double kept = chunk + 4 * row_lanes * (4 + 4) + surface + 3 * scalar;
   CHECK(product_traffic(counts, true).moved == kept);
@@ -181,7 +181,27 @@ TEST_CASE("bytes of four particles in a line, counted by hand", "[unit][bench]")
   const double ten = traffic_in("pressure", more).moved - traffic_in("pressure", counts).moved;
   CHECK(ten == Approx(10 * (kept + 18 * scalar)));
   more.walls = false;
-  CHECK(traffic_in("gradient", more).moved == near + x + scalar + vector);
+  CHECK(traffic_in("gradient", more).moved == near + x + 6 * 4 + scalar + vector);
+}
+
+TEST_CASE("bytes of an iteration with the multigrid, counted by hand", "[unit][bench]") {
+  Counts counts = counts_of(four_in_line());
+  counts.multigrid = true;
+  counts.first_nodes = 32;
+  counts.nodes = 48;
+  counts.iterations = 5;
+  const double before = traffic_in("pressure", counts).moved;
+  counts.iterations = 6;
+  const double rows = 12 + 4 * row_lanes * 8;       // one chunk
+  const double floats = 3 + (3) + (5) + 4 + 6 + 8;  // per particle: sweep, P^T, P, sweep, d and q, x and r
+  const double nodes =
+      (2 * 4 + 3) * 32 + 32 + (2 * 25 + 15) * 48;  // corners, b x relax; y; stencils and fifteen values
+  CHECK(traffic_in("pressure", counts).moved - before == Approx(3 * rows + 4 * 4 * floats + 10 * 4 + 4 * nodes));
+  counts.products += 1;
+  const double product = traffic_in("pressure", counts).moved;
+  counts.products += 1;
+  CHECK(traffic_in("pressure", counts).moved - product ==
+        Approx(product_traffic(counts, true).moved + 2 * 4 * number));  // and b, A p for the norm
 }
 
 TEST_CASE("states come back as they were written, and others are refused", "[unit][bench]") {
@@ -303,9 +323,10 @@ TEST_CASE("bench pressure writes every variant with its origin", "[unit][bench][
   const Json all = json_in(folder / "p.json");
   CHECK(missing(all, {"origin", "rows", "products", "triad"}).empty());
   CHECK(missing(all["origin"], origin_keys).empty());
-  std::size_t usual = 0;
-  for (const PreconditionerChoice& choice : all_preconditioners()) usual += choice.usual;
-  CHECK(all["rows"].size() == 2 * 2 * usual * 2 * 3);  // plates, solvers, preconditioners, guesses, tolerances
+  std::size_t ways = 0;
+  for (const PreconditionerChoice& choice : all_preconditioners())
+    if (choice.usual) ways += choice.only_kept ? 1 : 2;  // solvers
+  CHECK(all["rows"].size() == 2 * ways * 2 * 3);         // plates, guesses, tolerances
   for (const Json& row : all["rows"]) {
     CHECK(missing(row, {"case", "dim", "particles", "state", "plate", "solver", "preconditioner", "guess", "tolerance",
                         "iterations", "ms", "ms_min", "ms_max", "setup_ms", "solve_ms", "ratio", "residual"})

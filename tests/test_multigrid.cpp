@@ -219,9 +219,9 @@ void check_galerkin(const Fluid& fluid) {
 
 TEST_CASE("stencils of all levels are the dense product P^T A P", "[unit][multigrid]") {
   if (!on_host) return;
-  check_galerkin(column(12));
-  check_galerkin(fallen(12));
-  Fluid deep = fluid_at(random_cloud(500, 3, 8), {}, {.dim = 3, .spacing = 0.125, .radius = 2.1, .margin = 0.2});
+  check_galerkin(column(24));
+  check_galerkin(fallen(24));
+  Fluid deep = fluid_at(random_cloud(1000, 3, 8), {}, {.dim = 3, .spacing = 0.1, .radius = 2.1, .margin = 0.2});
   mark_surface(deep, real(0.7));
   check_galerkin(deep);
 }

@@ -23,8 +23,22 @@ KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& near, const Re
   });
 }
 
+// Marks the packs with anybody closer than `distance`.
 template <int Dim>
-int count_collisions_in(const Fluid& fluid, real distance, const IndexField& number) {
+void find_crowded_in(const Fluid& fluid, real distance, const FlagField& crowded) {
+  const auto near = around<Dim>(fluid);
+  Kokkos::parallel_for(
+      "greenwater::collision_find_crowded", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        bool found = false;
+        near.for_each(pack * pack_lanes, [&](const IndexPack&, const Vec<Dim, Pack>& r, const auto&) {
+          found = found || any_lane(dot(r, r) < distance * distance);
+        });
+        crowded(pack) = found;
+      });
+}
+
+template <int Dim>
+int count_collisions_in(const Fluid& fluid, real distance, const FlagField& crowded, const IndexField& number) {
   const auto near = around<Dim>(fluid);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const int count = fluid.particles.count;
@@ -34,10 +48,11 @@ int count_collisions_in(const Fluid& fluid, real distance, const IndexField& num
       KOKKOS_LAMBDA(const int pack, int& sum) {
         const int i = pack * pack_lanes;
         Pack collisions{};
-        for_each_collision(near, u, distance, i,
-                           [&](const IndexPack&, const Vec<Dim, Pack>&, const Pack&, const auto& so) {
-                             collisions += zero_unless(so, all_lanes<Pack>(real(1)));
-                           });
+        if (crowded(pack))
+          for_each_collision(near, u, distance, i,
+                             [&](const IndexPack&, const Vec<Dim, Pack>&, const Pack&, const auto& so) {
+                               collisions += zero_unless(so, all_lanes<Pack>(real(1)));
+                             });
         for (int l = 0; l < pack_lanes && i + l < count; ++l) {
           number(i + l) = static_cast<int>(lane(collisions, l));
           sum += number(i + l);
@@ -69,17 +84,26 @@ void collide_in(const Fluid& fluid, real distance, real restitution, const Index
       });
 }
 
+// Returns how far the one went that went farthest [m].
 template <int Dim>
-void move_on_in(const Fluid& fluid, const VectorField& du, real dt) {
+real move_on_in(const Fluid& fluid, const VectorField& du, real dt) {
   const auto x = fluid.particles.position;
   const auto u = fluid.particles.velocity;
-  Kokkos::parallel_for(
-      "greenwater::collision_move", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i) {
+  real farthest2 = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::collision_move", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i, real& most) {
+        const auto change = load<Dim>(du, i);
+        const real change2 = dot(change, change);
+        if (change2 == 0) return;
         for (int d = 0; d < Dim; ++d) {
-          u(i, d) += du(i, d);
-          x(i, d) += dt * du(i, d);
+          u(i, d) += change[d];
+          x(i, d) += dt * change[d];
         }
-      });
+        most = larger(most, change2);
+      },
+      Kokkos::Max<real>(farthest2));
+  return dt * sqrt(farthest2);
 }
 
 class Collision : public Effect {
@@ -92,6 +116,7 @@ class Collision : public Effect {
     if (number_.extent(0) < p.id.extent(0)) {
       number_ = uncleared<IndexField>("greenwater::collision_number", p.id.extent(0));
       du_ = uncleared<VectorField>("greenwater::collision_change", p.id.extent(0), p.dim);
+      crowded_ = uncleared<FlagField>("greenwater::collision_crowded", p.id.extent(0));
     }
     p.dim == 2 ? apply_in<2>(fluid, dt) : apply_in<3>(fluid, dt);
   }
@@ -99,16 +124,22 @@ class Collision : public Effect {
  private:
   template <int Dim>
   void apply_in(Fluid& fluid, real dt) {
-    const real distance = options_.distance * static_cast<real>(fluid.spacing);
+    const real distance = options_.distance * static_cast<real>(fluid.spacing), margin = distance / 10;
+    real left = 0;  // how far particles may still go before others than those in crowded packs can collide [m]
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-      if (count_collisions_in<Dim>(fluid, distance, number_) == 0) return;
+      if (left <= 0) {
+        find_crowded_in<Dim>(fluid, distance + margin, crowded_);
+        left = margin / 2;
+      }
+      if (count_collisions_in<Dim>(fluid, distance, crowded_, number_) == 0) return;
       collide_in<Dim>(fluid, distance, options_.restitution, number_, du_);
-      move_on_in<Dim>(fluid, du_, dt);
+      left -= move_on_in<Dim>(fluid, du_, dt);
     }
   }
 
   CollisionOptions options_;
   IndexField number_;
+  FlagField crowded_;  // (pack)
   VectorField du_;
 };
 
