@@ -16,13 +16,12 @@ void upload(Field& to, const std::string& label, const std::vector<T>& from) {
 }
 
 // felt = D^T p
-template <class Field>
-void feel(const IndexField& first, const IndexField& particle, const ScalarField& D, const Field& p,
-          const ScalarField& felt, int unknowns) {
+void feel(const AddedLists& D, const ScalarField& p, const ScalarField& felt, int unknowns) {
+  const AddedLists lists = D;
   Kokkos::parallel_for(
       "greenwater::added_feel", Range(0, unknowns), KOKKOS_LAMBDA(const int u) {
         accum sum = 0;
-        for (int e = first(u); e < first(u + 1); ++e) sum += D(e) * p(particle(e));
+        for (int e = lists.first(u); e < lists.first(u + 1); ++e) sum += lists.value(e) * p(lists.other(e));
         felt(u) = static_cast<real>(sum);
       });
 }
@@ -37,11 +36,17 @@ void give_answer(const ScalarField& C, const ScalarField& felt, const ScalarFiel
       });
 }
 
-KOKKOS_INLINE_FUNCTION accum row_sum(const IndexField& first, const IndexField& unknown, const ScalarField& D,
-                                     const ScalarField& answer, int row) {
-  accum sum = 0;
-  for (int e = first(row); e < first(row + 1); ++e) sum += D(e) * answer(unknown(e));
-  return sum;
+// Ap = Ap + D answer where nothing is fixed
+void bring_back(const AddedLists& D, const IndexField& particle, const ScalarField& answer, const FlagField& fixed,
+                const ScalarField& Ap, int touched) {
+  const AddedLists lists = D;
+  Kokkos::parallel_for(
+      "greenwater::added_product", Range(0, touched), KOKKOS_LAMBDA(const int row) {
+        accum sum = 0;
+        for (int e = lists.first(row); e < lists.first(row + 1); ++e) sum += lists.value(e) * answer(lists.other(e));
+        const int i = particle(row);
+        if (!fixed(i)) Ap(i) += static_cast<real>(sum);
+      });
 }
 
 }  // namespace
@@ -87,38 +92,9 @@ void AddedTerm::set(int unknowns, std::vector<AddedEntry> D, const std::vector<r
 
 void AddedTerm::add_product(const FlagField& fixed, const ScalarField& p, const ScalarField& Ap) const {
   if (!any()) return;
-  feel(of_unknown_.first, of_unknown_.other, of_unknown_.value, p, felt_, unknowns_);
+  feel(of_unknown_, p, felt_, unknowns_);
   give_answer(C_, felt_, answer_, unknowns_);
-  const AddedLists D = of_particle_;
-  const auto particle = particle_;
-  const auto answer = answer_;
-  Kokkos::parallel_for(
-      "greenwater::added_product", Range(0, touched_), KOKKOS_LAMBDA(const int row) {
-        const int i = particle(row);
-        if (!fixed(i)) Ap(i) += static_cast<real>(row_sum(D.first, D.other, D.value, answer, row));
-      });
-}
-
-accum AddedTerm::add_product(const FloatField& free, real scale, const FloatField& z, const FloatField& d,
-                             const FloatField& q) const {
-  accum added = 0;
-  if (!any()) return added;
-  feel(of_unknown_.first, of_unknown_.other, of_unknown_.value, z, felt_, unknowns_);
-  give_answer(C_, felt_, answer_, unknowns_);
-  const AddedLists D = of_particle_;
-  const auto particle = particle_;
-  const auto answer = answer_;
-  Kokkos::parallel_reduce(
-      "greenwater::added_product", Range(0, touched_),
-      KOKKOS_LAMBDA(const int row, accum& sum) {
-        const int i = particle(row);
-        if (free(i) == 0) return;
-        const auto more = static_cast<float>(scale * row_sum(D.first, D.other, D.value, answer, row));
-        q(i) += more;
-        sum += static_cast<accum>(more) * d(i);
-      },
-      added);
-  return added;
+  bring_back(of_particle_, particle_, answer_, fixed, Ap, touched_);
 }
 
 }  // namespace greenwater

@@ -32,10 +32,6 @@ class AddedTerm {
   /// Ap = Ap + D C D^T p where nothing is fixed; p must be 0 where it is.
   void add_product(const FlagField& fixed, const ScalarField& p, const ScalarField& Ap) const;
 
-  /// The same in float: q = q + scale D C D^T z where `free` is not 0; returns what was added, times d.
-  accum add_product(const FloatField& free, real scale, const FloatField& z, const FloatField& d,
-                    const FloatField& q) const;
-
  private:
   int unknowns_ = 0;
   int touched_ = 0;  // particles with entries

@@ -75,31 +75,6 @@ accum direction_energy(int count, const Vectors& v) {
   return dq;
 }
 
-<<<<<<< HEAD
-// What a term that was added to the matrix has of q = A d, q knowing of the directions before; returns its d . q.
-accum add_term(const PressureSystem& system, const FloatSystem& matrix, const Vectors& v) {
-  return system.added() ? system.added()->add_product(matrix.inverse, 1 / system.factor(), v.z, v.d, v.q) : 0;
-}
-
-// A x = r in float, until |r| falls to `target` times what it was.
-Round solve_in_float(const PressureSystem& system, Multigrid& multigrid, accum target, int most, const Vectors& v) {
-  const FloatSystem& matrix = multigrid.system();
-  accum rz_before = 0;
-  for (int k = 0; k < most; ++k) {
-    const accum rz = multigrid.finish(v.r, v.first, v.z);
-    if (!std::isfinite(rz)) return {k, "not a number"};
-    if (rz <= 0) return {k, "the preconditioner is not positive on this residual"};
-    accum dq = advance_direction(matrix, k == 0 ? 0.0f : static_cast<float>(rz / rz_before), v);
-    dq += add_term(system, matrix, v);
-    if (!std::isfinite(dq)) return {k, "not a number"};
-    if (dq <= 0) return {k, "the matrix is not positive on this direction (a closed cluster without a free surface?)"};
-    const accum rr = advance_solution(matrix, static_cast<float>(rz / dq), v);
-    if (!std::isfinite(rr)) return {k, "not a number"};
-    if (std::sqrt(rr) <= target) return {k + 1, {}};
-    rz_before = rz;
-  }
-  return {most, {}};
-=======
 // p = p + alpha d, r = r - alpha q, rough = scale r, first = rough / diagonal; returns r . r.
 accum advance_solution(const FloatSystem& matrix, real alpha, real scale, const ScalarField& p, const Vectors& v) {
   const auto inverse = Read<FloatField>(matrix.inverse);
@@ -118,7 +93,6 @@ accum advance_solution(const FloatSystem& matrix, real alpha, real scale, const 
       },
       rr);
   return rr;
->>>>>>> helper-mg
 }
 
 SolveReport stopped(int iterations, accum residual, std::string_view cause) {
@@ -152,22 +126,6 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
   }
   const accum enough = std::fmax(options_.tolerance * b_norm, static_cast<accum>(options_.absolute));
   accum before = std::numeric_limits<accum>::infinity();
-<<<<<<< HEAD
-  for (;;) {
-    system.apply(p, Ap_);
-    const accum residual = residual_norm(system, Ap_);
-    if (!std::isfinite(residual)) return stopped(iterations, residual / b_norm, "not a number");
-    if (residual <= enough) return {iterations, static_cast<real>(residual / b_norm), true, "converged"};
-    if (iterations >= options_.max_iterations) return stopped(iterations, residual / b_norm, "too many iterations");
-    if (residual > stall * before) return stopped(iterations, residual / b_norm, "the residual no longer falls");
-    before = residual;
-    begin_round(system, multigrid.system(), Ap_, residual, v);
-    const accum target = std::fmax(margin * enough / residual, least_in_float);
-    const Round done = solve_in_float(system, multigrid, target, options_.max_iterations - iterations, v);
-    iterations += done.iterations;
-    if (!done.cause.empty()) return stopped(iterations, residual / b_norm, done.cause);
-    add_correction(x_, residual / system.factor(), p, count);
-=======
   for (int k = 0;;) {
     system.apply(p, q_);  // what the iterations say of r is checked at the end of each round
     const accum start = std::sqrt(begin(system, multigrid.system(), v));
@@ -195,7 +153,6 @@ SolveReport RefinedCg::solve(const PressureSystem& system, Multigrid& multigrid,
       residual = std::sqrt(rr);
       rz_before = rz;
     }
->>>>>>> helper-mg
   }
 }
 
