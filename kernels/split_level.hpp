@@ -92,6 +92,7 @@ KOKKOS_INLINE_FUNCTION float product_at_node(const Level& level, const Splits& s
 
 /// The first smoothing from zero at a node that is split: each side of it has its own.
 KOKKOS_INLINE_FUNCTION void smooth_first(const Level& level, const Splits& s, int number, int value) {
+  s.e[number] = 0;
   if (!(s.relax[number] > 0)) return;
   const float rest = s.relax_rest[number] * (level.b[value] - s.b[number]);
   level.x[s.at[number]] = rest;

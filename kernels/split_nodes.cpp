@@ -9,8 +9,6 @@
 
 namespace greenwater {
 
-static_assert(2 * coarsest_nodes <= largest_dense);  // each of the last level's nodes may be split
-
 namespace {
 
 using Team = Kokkos::TeamPolicy<Space>;
@@ -23,24 +21,24 @@ KOKKOS_INLINE_FUNCTION void for_each(const Member& team, int begin, int end, con
 }
 
 /// Values at the nodes of the last level and of its splits from their right sides.
-template <int Dim>
 KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& stack, const SplitStack& splits) {
   const Level& last = stack.level[stack.count - 1];
   const Splits& s = splits.level[stack.count - 1];
-  const int nodes = stack.unknowns, count = nodes + s.count;
+  const int nodes = stack.unknowns, count = nodes + splits.last_count;
+  for_each(team, 1, s.count + 1, [&](const int number) { s.e[number] = 0; });
   for_each(team, 0, count, [&](const int row) {
     const float* inverse = splits.inverse + row * count;
     float sum = 0;
     for (int c = 0; c < nodes; ++c) sum += inverse[c] * last.b[stack.value[c]];
-    for (int c = nodes; c < count; ++c) sum += inverse[c] * s.b[c - nodes + 1];
+    for (int c = nodes; c < count; ++c) sum += inverse[c] * s.b[splits.last[c - nodes]];
     if (row < nodes)
       last.y[stack.position[row]] = sum;
     else
-      s.e[row - nodes + 1] = sum;
+      s.e[splits.last[row - nodes]] = sum;
   });
 }
 
-// The matrix of the last level with its splits, on the device.
+// The matrix of the last level with all that may be splits, on the device.
 template <int Dim>
 void fill_last(const LevelStack& stack, const SplitStack& splits, const FloatField& matrix) {
   const Level last = stack.level[stack.count - 1];
@@ -147,7 +145,7 @@ void launch_small_levels(const LevelStack& stack, const SplitStack& splits, int 
         const int last = stack.count - 1;
         for (int l = from; l < last; ++l)
           go_down<Dim>(team, stack.level[l], splits.level[l], stack.level[l + 1], splits.level[l + 1]);
-        solve_last<Dim>(team, stack, splits);
+        solve_last(team, stack, splits);
         for (int l = last - 1; l >= from; --l)
           go_up<Dim>(team, stack.level[l], splits.level[l], stack.level[l + 1], splits.level[l + 1]);
       });
@@ -212,20 +210,16 @@ std::vector<std::array<int, 3>> twice(std::vector<std::array<int, 3>> nodes) {
   return nodes;
 }
 
-// Splits of which next to nothing is there are left out, as nodes are: rounding is not small beside their rows.
-void invert_without_slivers(std::vector<double>& A, int count, int nodes) {
-  constexpr double hardly = 1e-4;
-  double most = 0;
-  for (int i = 0; i < count; ++i) most = std::max(most, A[i * count + i]);
-  std::vector<int> out;
+// Numbers of the splits that are in the last level's matrix. Those of which next to nothing is there are left out, as nodes
+// are.
+std::vector<int> present_in(const FloatField::host_mirror_type& matrix, int count, int nodes) {
+  constexpr float hardly = 1e-4f;
+  float most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, matrix(i * count + i));
+  std::vector<int> present;
   for (int i = nodes; i < count; ++i)
-    if (!(A[i * count + i] > hardly * most)) out.push_back(i);
-  for (const int i : out) {
-    for (int j = 0; j < count; ++j) A[i * count + j] = A[j * count + i] = 0;
-    A[i * count + i] = 1;
-  }
-  invert_in_place(A.data(), count);
-  for (const int i : out) A[i * count + i] = 0;
+    if (matrix(i * count + i) > hardly * most) present.push_back(i - nodes + 1);
+  return present;
 }
 
 template <class Field>
@@ -289,12 +283,13 @@ void SplitNodes::place(int l, const Level& level, const Nodes& nodes, int dim) {
 void SplitNodes::arrange(const GridLevels& levels) {
   const LevelStack& stack = levels.stack();
   const int dim = levels.dim();
+  for (int l = 0; l < levels_; ++l) set_numbers(stack_.level[l], false);
+  levels_ = stack.count;
   Nodes nodes = nodes_;
-  for (int l = 0; l < stack.count; ++l) {
+  for (int l = 0; l < levels_; ++l) {
     const Level& level = stack.level[l];
-    if (stack_.level[l].number) set_numbers(stack_.level[l], false);
     place(l, level, nodes, dim);
-    if (l + 1 == stack.count) break;
+    if (l + 1 == levels_) break;
     nodes = parents_of(nodes);
     const Nodes under = around(twice(nodes), 1, level, dim);
     upload(fields_[l].under_at, "greenwater::split_under", positions_of(under, level));
@@ -321,6 +316,7 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
     fields_.clear();
     stack_ = {};
     inverse_ = {};
+    levels_ = 0;
     nodes_.clear();
   }
   if (nodes.empty()) {
@@ -330,7 +326,7 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
   dim_ = levels.dim();
   grid_ = seats.grid;
   fields_.resize(most_levels);
-  if (nodes != nodes_) {
+  if (nodes != nodes_ || levels.stack().count != levels_) {
     nodes_ = nodes;
     arrange(levels);
   }
@@ -341,18 +337,27 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
 }
 
 void SplitNodes::invert_last(const LevelStack& stack) {
-  const int count = stack.unknowns + stack_.level[stack.count - 1].count;
-  if (inverse_.extent(0) == 0) {
-    inverse_ = uncleared<FloatField>("greenwater::split_inverse", largest_dense * largest_dense);
+  const int nodes = stack.unknowns, all = nodes + stack_.level[stack.count - 1].count;
+  if (static_cast<int>(inverse_.extent(0)) < all * all) {
+    grow(inverse_, "greenwater::split_inverse", all * all);
     host_inverse_ = Kokkos::create_mirror_view(inverse_);
     stack_.inverse = inverse_.data();
   }
   dim_ == 2 ? fill_last<2>(stack, stack_, inverse_) : fill_last<3>(stack, stack_, inverse_);
   Kokkos::deep_copy(host_inverse_, inverse_);
-  dense_.assign(host_inverse_.data(), host_inverse_.data() + count * count);
-  invert_without_slivers(dense_, count, stack.unknowns);
+  const std::vector<int> present = present_in(host_inverse_, all, nodes);
+  const int count = nodes + static_cast<int>(present.size());
+  const auto place = [&](int k) { return k < nodes ? k : nodes + present[k - nodes] - 1; };
+  dense_.resize(static_cast<std::size_t>(count) * count);
+  for (int row = 0; row < count; ++row)
+    for (int column = 0; column < count; ++column)
+      dense_[row * count + column] = host_inverse_(place(row) * all + place(column));
+  invert_in_place(dense_.data(), count);
   std::copy(dense_.begin(), dense_.end(), host_inverse_.data());
   Kokkos::deep_copy(inverse_, host_inverse_);
+  upload(last_, "greenwater::split_last", present);
+  stack_.last = last_.data();
+  stack_.last_count = static_cast<int>(present.size());
 }
 
 void SplitNodes::restrict_particles(const Seats& seats, const GridLevels& levels, const FloatField& t) const {

@@ -12,7 +12,10 @@ namespace greenwater {
 /// Splits as kernels take them, by value.
 struct SplitStack {
   Splits level[most_levels];
-  const float* inverse = nullptr;  // (row, column) of the last level's matrix: nodes, then splits
+  // Of the last level: its matrix' inverse, and which splits are in it.
+  int last_count = 0;
+  const float* inverse = nullptr;  // (row, column) nodes, then splits
+  const int* last = nullptr;       // numbers
 };
 
 class SplitNodes {
@@ -48,12 +51,14 @@ class SplitNodes {
   CutCells cut_;
   GridShape grid_;
   int dim_ = 0;
-  Nodes nodes_;  // of the first level that may be split
+  int levels_ = 0;  // that have their lists
+  Nodes nodes_;     // of the first level that may be split
   SplitStack stack_;
   std::vector<Fields> fields_;  // that the stack points to
   IndexField side_;             // (particle) bit c: it is on the split's side of corner c of its cell
   IndexField cells_;            // around the nodes
   int cells_count_ = 0;
+  IndexField last_;
   FloatField inverse_;
   FloatField::host_mirror_type host_inverse_;
   std::vector<double> dense_;
