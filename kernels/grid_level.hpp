@@ -26,6 +26,7 @@ struct Level {
   int packs = 1;             // along x
   int row = 0, layer = 0;    // from a position to the next in y, in z
   int origin = 0;            // position of node (0, 0, 0)
+  int positions = 0;         // in all
   int active = 0;            // slots 1 ... active
   int* slot = nullptr;       // (pack)
   int* pack = nullptr;       // (slot)

@@ -316,6 +316,7 @@ void GridLevels::make_level(int l, const int (&nodes)[3]) {
   require<ResourceError>(positions < std::numeric_limits<int>::max() / 2,
                          "the domain has too many cells for the multigrid: make it smaller, or choose "
                          "mps.pressure.preconditioner = \"jacobi\"");
+  level.positions = static_cast<int>(positions);
   Fields& fields = fields_[l];
   const int packs = packs_of(level);
   fields.slot = IndexField("greenwater::grid_slot", packs);

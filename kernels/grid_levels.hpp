@@ -43,6 +43,7 @@ class GridLevels {
   const Level& first() const { return stack_.level[0]; }
   const LevelStack& stack() const { return stack_; }
   int dim() const { return dim_; }
+  int small() const { return small_; }  // first of the levels that one launch does together
 
  private:
   struct Fields {

@@ -8,17 +8,8 @@ namespace {
 constexpr int wide =
     4;  // nodes along each axis that a row of A P can reach: those of its cell and one more to each side
 constexpr int window_nodes = wide * wide;  // in x and y; in 3-D four such layers, one after the other
-constexpr float far_away = 1e6f;           // [cells]
 
 static_assert(window_nodes == node_lanes);  // so that a window is a vector on a host
-
-/// Device view of the particles in the grid.
-struct Seats {
-  int count;
-  GridShape grid;
-  Read<IndexField> first;
-  Read<FloatField> place[3];
-};
 
 /// Values at a window's nodes: a vector on a host, an array on a GPU.
 struct Window {
@@ -375,10 +366,12 @@ void make_first_level(const Seats& seats, const FloatSystem& system, const Level
 
 template <int Dim>
 void correct_from_grid(const Seats& seats, const FloatSystem& system, const GridLevels& levels, const FloatField& t,
-                       const FloatField& parts, const FloatField& z) {
+                       const FloatField& parts, const SplitNodes& splits, const FloatField& z) {
   restrict_cells<Dim>(seats, levels.first(), t, parts);
   restrict_to_nodes<Dim>(levels.first(), parts);
-  levels.cycle();
+  splits.restrict_particles(seats, levels, t);
+  splits.any() ? splits.cycle(levels) : levels.cycle();
+  splits.prolong_to_particles(seats, levels, z);
   prolong_to_particles<Dim>(seats, system, levels.first(), z);
 }
 
@@ -405,6 +398,7 @@ void Multigrid::update(const PressureSystem& system) {
   dim == 2 ? make_first_level<2>(seats, system_, level, window_, cells_)
            : make_first_level<3>(seats, system_, level, window_, cells_);
   levels_.coarsen();
+  splits_.update(fluid, seats, system_, levels_);
 }
 
 void Multigrid::grow_fields(int dim) {
@@ -420,8 +414,8 @@ void Multigrid::grow_fields(int dim) {
 accum Multigrid::finish(const FloatField& r, const FloatField& first, const FloatField& z) {
   const Seats seats = {system_.count, grid_, first_, {place_[0], place_[1], place_[2]}};
   first_residual(system_, first, z);
-  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, z, parts_, first)
-                     : correct_from_grid<3>(seats, system_, levels_, z, parts_, first);
+  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, z, parts_, splits_, first)
+                     : correct_from_grid<3>(seats, system_, levels_, z, parts_, splits_, first);
   return last_sweep(system_, r, first, z);
 }
 

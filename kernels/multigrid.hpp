@@ -7,18 +7,12 @@
 // their matrix, and further levels with every second node each do the rest (kernels/grid_levels.hpp). Everything is
 // float, as it only shows the way.
 
+#include "kernels/float_system.hpp"
 #include "kernels/grid_levels.hpp"
 #include "kernels/pressure_system.hpp"
+#include "kernels/split_nodes.hpp"
 
 namespace greenwater {
-
-/// The pressure system over K in float. Rows of particles at the surface are left out: zero in and out.
-struct FloatSystem {
-  int count = 0;
-  Rows rows;
-  FloatField diagonal;  // (i) A_ii / K [-]; 0 where the surface is and beyond the last particle
-  FloatField inverse;   // (i) 1 over that, and 0
-};
 
 class Multigrid {
  public:
@@ -40,6 +34,7 @@ class Multigrid {
 
   FloatSystem system_;
   GridLevels levels_;
+  SplitNodes splits_;  // where plates are
   GridShape grid_;
   IndexField first_;        // of the grid's cells
   FloatField place_[3];     // (i) of the particles, in cells from the grid's origin [-]; far away at the surface

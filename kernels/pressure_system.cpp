@@ -123,6 +123,7 @@ void PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   else
     fluid_->particles.dim == 2 ? apply_recomputed_in<2>(*fluid_, K, diagonal_, p, Ap)
                                : apply_recomputed_in<3>(*fluid_, K, diagonal_, p, Ap);
+  if (added_) added_->add_product(fixed(), p, Ap);
 }
 
 }  // namespace greenwater

@@ -1,6 +1,7 @@
 #pragma once
 // The pressure Poisson equation, never stored as a matrix: A p = b with A the MPS Laplacian (sign turned), from the rows.
 
+#include "kernels/added_term.hpp"
 #include "kernels/fluid.hpp"
 
 namespace greenwater {
@@ -30,6 +31,9 @@ class PressureSystem {
   /// Makes the diagonal larger by this part of itself: as if the fluid were more compressible.
   void raise_diagonal(real part);
 
+  /// Adds a term to A, or with null takes it away; it must outlive every apply(). The diagonal stays as it is.
+  void set_added(const AddedTerm* added) { added_ = added; }
+
   /// Ap = A p; 0 where the surface is.
   void apply(const ScalarField& p, const ScalarField& Ap) const;
 
@@ -39,10 +43,12 @@ class PressureSystem {
   const FlagField& fixed() const { return fluid_->particles.surface; }
   const Fluid& fluid() const { return *fluid_; }
   real factor() const;  // K [1/m^2]
+  const AddedTerm* added() const { return added_; }
 
  private:
   PressureOptions options_;
   const Fluid* fluid_ = nullptr;
+  const AddedTerm* added_ = nullptr;
   ScalarField rhs_, diagonal_;
 };
 

@@ -1,0 +1,46 @@
+#pragma once
+// One more term of the pressure operator, D C D^T: what few unknowns answer to the pressure, such as those of a structure
+// that gives way. Column u of D says with what weight each particle's pressure acts on unknown u; C, symmetric and
+// positive semi-definite, what the unknowns make of it; and D brings that back to the particles.
+
+#include <vector>
+
+#include "core/fields.hpp"
+
+namespace greenwater {
+
+/// One entry of D.
+struct AddedEntry {
+  int particle, unknown;
+  real value;
+};
+
+/// D by columns (other: particle) or by rows (other: unknown): entries of number k are first(k) ... first(k + 1) - 1.
+struct AddedLists {
+  IndexField first, other;
+  ScalarField value;
+};
+
+class AddedTerm {
+ public:
+  /// D, for particles as they are sorted now, and C(row, column), as many rows as unknowns, row by row. D C D^T has the
+  /// unit of the pressure operator [1/m^2]. Memory is kept and only grown. Entries of one particle and unknown add up.
+  void set(int unknowns, std::vector<AddedEntry> D, const std::vector<real>& C);
+
+  bool any() const { return unknowns_ > 0; }
+
+  /// Ap = Ap + D C D^T p where nothing is fixed; p must be 0 where it is.
+  void add_product(const FlagField& fixed, const ScalarField& p, const ScalarField& Ap) const;
+
+ private:
+  int unknowns_ = 0;
+  int touched_ = 0;  // particles with entries
+  AddedLists of_unknown_;
+  AddedLists of_particle_;  // of those touched
+  IndexField particle_;     // (touched)
+  ScalarField C_;           // (row, column)
+  ScalarField felt_;        // (unknown) D^T p
+  ScalarField answer_;      // (unknown) C D^T p
+};
+
+}  // namespace greenwater
