@@ -4,7 +4,7 @@
 #include "io/suggest.hpp"
 #include "kernels/density.hpp"
 #include "kernels/motion.hpp"
-#include "kernels/refined_cg.hpp"
+#include "kernels/multigrid.hpp"
 
 namespace greenwater::bench {
 namespace {
@@ -68,18 +68,7 @@ class Plain : public TimedSolver {
   ConjugateGradient cg_;
 };
 
-class WithMultigrid : public TimedSolver {
- public:
-  explicit WithMultigrid(const CgOptions& options) : cg_(options) {}
-  void set_up(const PressureSystem& system) override { multigrid_.update(system); }
-  SolveReport solve(const PressureSystem& system, const ScalarField& p) override {
-    return cg_.solve(system, multigrid_, p);
-  }
-
- private:
-  Multigrid multigrid_;
-  RefinedCg cg_;
-};
+std::unique_ptr<Preconditioner> make_multigrid() { return std::make_unique<Multigrid>(); }
 
 template <class Solver>
 std::unique_ptr<TimedSolver> made(const CgOptions& options) {
@@ -109,7 +98,7 @@ const std::vector<PreconditionerChoice>& all_preconditioners() {
   // clang-format off
   static const std::vector<PreconditionerChoice> all{
       {"jacobi", true, false, made<Plain<make_jacobi>>},
-      {"multigrid", true, true, made<WithMultigrid>},
+      {"multigrid", true, true, made<Plain<make_multigrid>>},
       {"none", false, false, made<Plain<make_identity>>}};
   // clang-format on
   return all;

@@ -108,6 +108,16 @@ KOKKOS_INLINE_FUNCTION V zero_unless(const Mask& yes, const V& v) {
   return yes ? v : V{};
 }
 
+/// v in the first `count` lanes, and 0 in the others.
+template <class V>
+KOKKOS_INLINE_FUNCTION V first_lanes(int count, const V& v) {
+  if constexpr (is_scalar<V>)
+    return count > 0 ? v : V{};
+  else
+    return zero_unless(
+        counted_lanes<V>() < static_cast<std::remove_cv_t<std::remove_reference_t<decltype(V{}[0])>>>(count), v);
+}
+
 /// Bit l is set where it is so in lane l.
 template <class Mask>
 KOKKOS_INLINE_FUNCTION unsigned lane_bits(const Mask& yes) {
@@ -217,6 +227,28 @@ KOKKOS_INLINE_FUNCTION void store_lanes(T* to, const V& v) {
     *to = v;
   else
     __builtin_memcpy(to, &v, sizeof(V));
+}
+
+/// Writes v from `to` on as numbers of another type.
+template <class V, class T>
+KOKKOS_INLINE_FUNCTION void store_converted(T* to, const V& v) {
+  if constexpr (is_scalar<V>) {
+    *to = static_cast<T>(v);
+  } else {
+    using From = std::remove_cv_t<std::remove_reference_t<decltype(V{}[0])>>;
+    constexpr int half = static_cast<int>(sizeof(V) / sizeof(From)) / 2;  // more than a register is converted badly
+    for (int side = 0; side < 2; ++side) {
+      Lanes<From, half> part;
+      __builtin_memcpy(&part, reinterpret_cast<const char*>(&v) + side * sizeof part, sizeof part);
+      store_lanes(to + side * half, convert_lanes<Lanes<T, half>>(part));
+    }
+  }
+}
+
+/// The cache line at `from` is wanted soon.
+template <class T>
+KOKKOS_INLINE_FUNCTION void prefetch([[maybe_unused]] const T* from) {
+  if constexpr (on_host) __builtin_prefetch(from);
 }
 
 /// from[j], lane by lane.

@@ -59,7 +59,7 @@ struct Item {
   }
 };
 
-inline int items(const Level& level) { return level.active * items_of_pack; }
+KOKKOS_INLINE_FUNCTION int items(const Level& level) { return level.active * items_of_pack; }
 
 /// A x of an item's nodes.
 template <int Dim>

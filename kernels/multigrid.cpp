@@ -326,7 +326,7 @@ void prolong_to_particles(const Seats& seats, const FloatSystem& system, const L
 }
 
 // to = z + (r - A z) / diagonal; returns r . to.
-accum last_sweep(const FloatSystem& system, const FloatField& r, const FloatField& z, const FloatField& to) {
+accum last_sweep(const FloatSystem& system, const FloatField& r, const FloatField& z, const ScalarField& to) {
   const auto rows = system.rows;
   const auto inverse = Read<FloatField>(system.inverse);
   accum rz = 0;
@@ -337,17 +337,25 @@ accum last_sweep(const FloatSystem& system, const FloatField& r, const FloatFiel
         const FloatPack residual = load_lanes<FloatPack>(&r(i));
         const FloatPack swept =
             load_lanes<FloatPack>(&inverse(i)) * (residual + row_product<FloatPack>(rows, z.data(), i));
-        store_lanes(&to(i), swept);
+        store_converted(&to(i), swept);
         sum += sum_lanes(residual * swept);
       },
       rz);
   return rz;
 }
 
-void first_sweep(const FloatSystem& system, const FloatField& r, const FloatField& z) {
+// r in float, 0 beyond the last particle, and z = r / diagonal.
+void first_sweep(const FloatSystem& system, const ScalarField& exact, const FloatField& r, const FloatField& z) {
+  using Floats = Lanes<float, pack_lanes>;
   const auto inverse = Read<FloatField>(system.inverse);
+  const int count = system.count;
   Kokkos::parallel_for(
-      "greenwater::first_sweep", Range(0, system.count), KOKKOS_LAMBDA(const int i) { z(i) = inverse(i) * r(i); });
+      "greenwater::first_sweep", Range(0, padded(count) / pack_lanes), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const auto rough = convert_lanes<Floats>(first_lanes(count - i, load_pack(exact, i)));
+        store_lanes(&r(i), rough);
+        store_lanes(&z(i), load_pack(inverse, i) * rough);
+      });
 }
 
 void grow(FloatField& field, const std::string& label, std::int64_t size) {
@@ -407,21 +415,19 @@ void Multigrid::grow_fields(int dim) {
   grow(system_.diagonal, "greenwater::multigrid_diagonal", room);
   grow(system_.inverse, "greenwater::multigrid_inverse", room);
   grow(window_, "greenwater::multigrid_window", room * window_nodes);
-  grow(first_sweep_, "greenwater::multigrid_sweep", room);
+  grow(r_, "greenwater::multigrid_residual", room);
+  grow(z_, "greenwater::multigrid_sweep", room);
+  grow(t_, "greenwater::multigrid_left", room);
   for (int d = 0; d < dim; ++d) grow(place_[d], "greenwater::multigrid_place", room);
 }
 
-accum Multigrid::finish(const FloatField& r, const FloatField& first, const FloatField& z) {
+accum Multigrid::apply(const ScalarField& r, const ScalarField& z) const {
   const Seats seats = {system_.count, grid_, first_, {place_[0], place_[1], place_[2]}};
-  first_residual(system_, first, z);
-  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, z, parts_, splits_, first)
-                     : correct_from_grid<3>(seats, system_, levels_, z, parts_, splits_, first);
-  return last_sweep(system_, r, first, z);
-}
-
-void Multigrid::apply(const FloatField& r, const FloatField& z) {
-  first_sweep(system_, r, first_sweep_);
-  finish(r, first_sweep_, z);
+  first_sweep(system_, r, r_, z_);
+  first_residual(system_, z_, t_);
+  levels_.dim() == 2 ? correct_from_grid<2>(seats, system_, levels_, t_, parts_, splits_, z_)
+                     : correct_from_grid<3>(seats, system_, levels_, t_, parts_, splits_, z_);
+  return last_sweep(system_, r_, z_, z);
 }
 
 }  // namespace greenwater

@@ -9,22 +9,16 @@
 
 #include "kernels/float_system.hpp"
 #include "kernels/grid_levels.hpp"
-#include "kernels/pressure_system.hpp"
+#include "kernels/preconditioner.hpp"
 #include "kernels/split_nodes.hpp"
 
 namespace greenwater {
 
-class Multigrid {
+class Multigrid : public Preconditioner {
  public:
-  /// Looks at the assembled system: its float copy, and the matrices of all levels. Needs rows with weights.
-  void update(const PressureSystem& system);
-
-  /// z = M r, M symmetric and positive. r must be 0 where the surface is, and for the last particle's whole pack.
-  /// Fields have room for one pack more than the particles fill.
-  void apply(const FloatField& r, const FloatField& z);
-
-  /// The same from `first` = r / diagonal, which is lost; returns r . z.
-  accum finish(const FloatField& r, const FloatField& first, const FloatField& z);
+  /// Makes a float copy of the diagonal, and the matrices of all levels. Needs rows with weights.
+  void update(const PressureSystem& system) override;
+  accum apply(const ScalarField& r, const ScalarField& z) const override;
 
   const FloatSystem& system() const { return system_; }
   const GridLevels& levels() const { return levels_; }
@@ -36,12 +30,14 @@ class Multigrid {
   GridLevels levels_;
   SplitNodes splits_;  // where plates are
   GridShape grid_;
-  IndexField first_;        // of the grid's cells
-  FloatField place_[3];     // (i) of the particles, in cells from the grid's origin [-]; far away at the surface
-  FloatField window_;       // (i, node) A P / K at the nodes around the particle's cell
-  FloatField cells_;        // (slot, lane, corner, node) of P^T A P / K: what each cell has, corner by corner
-  FloatField parts_;        // (slot, corner, lane) of P^T r: what each cell has
-  FloatField first_sweep_;  // (i) r / diagonal, for apply()
+  IndexField first_;     // of the grid's cells
+  FloatField place_[3];  // (i) of the particles, in cells from the grid's origin [-]; far away at the surface
+  FloatField window_;    // (i, node) A P / K at the nodes around the particle's cell
+  FloatField cells_;     // (slot, lane, corner, node) of P^T A P / K: what each cell has, corner by corner
+  FloatField parts_;     // (slot, corner, lane) of P^T r: what each cell has
+  FloatField r_;         // (i) the residual to work on
+  FloatField z_;         // (i) what was made of it
+  FloatField t_;         // (i) what is left of it
 };
 
 }  // namespace greenwater

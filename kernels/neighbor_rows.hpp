@@ -28,6 +28,12 @@ struct Around {
   /// with fewer neighbours than others of its pack sees some that are too far away to weigh anything.
   template <class F>
   KOKKOS_INLINE_FUNCTION void for_each(int i, F f) const {
+    for_each_neighbour(i, f);
+    for_each_image(i, f);
+  }
+
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void for_each_neighbour(int i, F f) const {
     const auto xi = load_pack<Dim>(x, i);
     for_each_place(near, i, [&](const int k, const std::int64_t place, const Pack& number) {
       const auto j = load_lanes<IndexPack>(near.index.data() + place);
@@ -42,7 +48,12 @@ struct Around {
       }
       f(j, r, itself);
     });
+  }
+
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void for_each_image(int i, F f) const {
     if (images.number.extent(0) == 0) return;
+    const auto xi = load_pack<Dim>(x, i);
     for_each_place(images, i, [&](const int k, const std::int64_t place, const Pack& number) {
       const auto j = load_lanes<IndexPack>(images.index.data() + place);
       const auto xj = gather_pack<Dim>(x, j);

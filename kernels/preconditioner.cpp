@@ -3,20 +3,34 @@
 namespace greenwater {
 namespace {
 
-void copy(const ScalarField& r, const ScalarField& z, int count) {
-  Kokkos::parallel_for(
-      "greenwater::precondition_none", Range(0, count), KOKKOS_LAMBDA(const int i) { z(i) = r(i); });
+accum copy(const ScalarField& r, const ScalarField& z, int count) {
+  accum rz = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::precondition_none", Range(0, count),
+      KOKKOS_LAMBDA(const int i, accum& sum) {
+        z(i) = r(i);
+        sum += accum(r(i)) * z(i);
+      },
+      rz);
+  return rz;
 }
 
-void divide(const ScalarField& r, const ScalarField& diagonal, const ScalarField& z, int count) {
-  Kokkos::parallel_for(
-      "greenwater::precondition_jacobi", Range(0, count), KOKKOS_LAMBDA(const int i) { z(i) = r(i) / diagonal(i); });
+accum divide(const ScalarField& r, const ScalarField& diagonal, const ScalarField& z, int count) {
+  accum rz = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::precondition_jacobi", Range(0, count),
+      KOKKOS_LAMBDA(const int i, accum& sum) {
+        z(i) = r(i) / diagonal(i);
+        sum += accum(r(i)) * z(i);
+      },
+      rz);
+  return rz;
 }
 
 class Identity : public Preconditioner {
  public:
   void update(const PressureSystem& system) override { count_ = system.count(); }
-  void apply(const ScalarField& r, const ScalarField& z) const override { copy(r, z, count_); }
+  accum apply(const ScalarField& r, const ScalarField& z) const override { return copy(r, z, count_); }
 
  private:
   int count_ = 0;
@@ -28,7 +42,7 @@ class Jacobi : public Preconditioner {
     count_ = system.count();
     diagonal_ = system.diagonal();
   }
-  void apply(const ScalarField& r, const ScalarField& z) const override { divide(r, diagonal_, z, count_); }
+  accum apply(const ScalarField& r, const ScalarField& z) const override { return divide(r, diagonal_, z, count_); }
 
  private:
   int count_ = 0;

@@ -12,7 +12,8 @@ class Preconditioner {
   virtual ~Preconditioner() = default;
   /// Looks at the assembled system, once each step.
   virtual void update(const PressureSystem& system) = 0;
-  virtual void apply(const ScalarField& r, const ScalarField& z) const = 0;
+  /// z = M r; r must be 0 where the surface is, and z is. Returns r . z.
+  virtual accum apply(const ScalarField& r, const ScalarField& z) const = 0;
 };
 
 /// z = r

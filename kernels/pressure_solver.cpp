@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "kernels/blas.hpp"
-#include "kernels/refined_cg.hpp"
+#include "kernels/multigrid.hpp"
 
 namespace greenwater {
 namespace {
@@ -44,18 +44,17 @@ CgOptions shortened(CgOptions options, int most) {
 class WithMultigrid : public PressureSolver {
  public:
   explicit WithMultigrid(const SolverOptions& options)
-      : cg_(shortened(options.cg, options.most_multigrid_iterations)),
+      : first_way_(std::make_unique<Multigrid>(), shortened(options.cg, options.most_multigrid_iterations)),
         last_resort_(make_jacobi(), options.cg),
         raise_(options.raise) {}
 
   SolveReport solve(PressureSystem& system, const ScalarField& p) override {
-    clear_unless_finite(p, system.count());
-    const SolveReport first = with_multigrid(system, p);
+    const SolveReport first = first_way_.solve(system, p);
     if (first.converged || !std::isfinite(first.residual)) return first;
 
     system.raise_diagonal(raise_);
     clear(p, system.count());
-    SolveReport report = with_multigrid(system, p);
+    SolveReport report = first_way_.solve(system, p);
     report.recovery = "a larger diagonal";
     if (!report.converged) {
       clear(p, system.count());
@@ -70,14 +69,7 @@ class WithMultigrid : public PressureSolver {
   }
 
  private:
-  SolveReport with_multigrid(const PressureSystem& system, const ScalarField& p) {
-    multigrid_.update(system);
-    return cg_.solve(system, multigrid_, p);
-  }
-
-  Multigrid multigrid_;
-  RefinedCg cg_;
-  Plain last_resort_;
+  Plain first_way_, last_resort_;
   real raise_;
 };
 

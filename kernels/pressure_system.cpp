@@ -1,5 +1,7 @@
 #include "kernels/pressure_system.hpp"
 
+#include "kernels/blas.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -58,42 +60,57 @@ void divergence_source_in(const Fluid& fluid, real dt, const ScalarField& b) {
       });
 }
 
-// A p from sums over rows; p is 0 where the surface is, so that no entry needs to be left out.
-KOKKOS_INLINE_FUNCTION void store_product(const Read<FlagField>& fixed, real K, const ScalarField& diagonal,
-                                          const ScalarField& p, const Pack& sum, int i, const ScalarField& Ap) {
-  const Pack product = load_pack(diagonal, i) * load_pack(p, i) - K * sum;
-  for (int l = 0; l < pack_lanes; ++l) Ap(i + l) = fixed(i + l) ? real(0) : lane(product, l);
+// A p from sums over rows, which it also returns; p is 0 where the surface is, so that no entry needs to be left out.
+KOKKOS_INLINE_FUNCTION Pack store_product(const Read<FlagField>& fixed, real K, const ScalarField& diagonal,
+                                          const Pack& p, const Pack& sum, int i, int count, const ScalarField& Ap) {
+  const Pack held = convert_lanes<Pack>(load_pack(fixed, i));
+  const Pack product = first_lanes(count - i, zero_unless(held == 0, load_pack(diagonal, i) * p - K * sum));
+  store_lanes(&Ap(i), product);
+  return product;
 }
 
-void apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p, const ScalarField& Ap) {
+accum apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p, const ScalarField& Ap) {
   const auto fixed = Read<FlagField>(fluid.particles.surface);
   const auto near = fluid.rows.near;
-  Kokkos::parallel_for(
-      "greenwater::apply_pressure", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+  const int count = fluid.particles.count;
+  accum energy = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::apply_pressure", packs(count),
+      KOKKOS_LAMBDA(const int pack, accum& sum) {
         const int i = pack * pack_lanes;
-        store_product(fixed, K, diagonal, p, row_product<Pack>(near, p.data(), i), i, Ap);
-      });
+        const Pack own = first_lanes(count - i, load_pack(p, i));
+        sum +=
+            sum_lanes(own * store_product(fixed, K, diagonal, own, row_product<Pack>(near, p.data(), i), i, count, Ap));
+      },
+      energy);
+  return energy;
 }
 
 // The weights are rounded as those that are kept, so that both ways give the same operator.
 template <int Dim>
-void apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p,
-                         const ScalarField& Ap) {
+accum apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p,
+                          const ScalarField& Ap) {
   const auto near = around<Dim>(fluid);
   const auto w = fluid.laplacian.weight;
   const auto fixed = Read<FlagField>(fluid.particles.surface);
-  Kokkos::parallel_for(
-      "greenwater::apply_pressure", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+  const int count = fluid.particles.count;
+  accum energy = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::apply_pressure", packs(count),
+      KOKKOS_LAMBDA(const int pack, accum& total) {
         const int i = pack * pack_lanes;
-        const Pack own = convert_lanes<Pack>(counted_lanes<IndexPack>() + i);
+        const Pack place = convert_lanes<Pack>(counted_lanes<IndexPack>() + i);
         Pack sum{};
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack exact = image.share * w(sqrt(dot(r, r)));
           const Pack weight = convert_lanes<Pack>(convert_lanes<Lanes<float, pack_lanes>>(exact));
-          sum += zero_unless(convert_lanes<Pack>(j) != own, weight * gather_pack(p, j));
+          sum += zero_unless(convert_lanes<Pack>(j) != place, weight * gather_pack(p, j));
         });
-        store_product(fixed, K, diagonal, p, sum, i, Ap);
-      });
+        const Pack own = first_lanes(count - i, load_pack(p, i));
+        total += sum_lanes(own * store_product(fixed, K, diagonal, own, sum, i, count, Ap));
+      },
+      energy);
+  return energy;
 }
 
 }  // namespace
@@ -116,14 +133,15 @@ void PressureSystem::raise_diagonal(real part) { raise(diagonal_, fixed(), part,
 
 real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
 
-void PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
+accum PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);
-  if (fluid_->keep_weights)
-    apply_kept(*fluid_, K, diagonal_, p, Ap);
-  else
-    fluid_->particles.dim == 2 ? apply_recomputed_in<2>(*fluid_, K, diagonal_, p, Ap)
-                               : apply_recomputed_in<3>(*fluid_, K, diagonal_, p, Ap);
-  if (added_) added_->add_product(fixed(), p, Ap);
+  const bool flat = fluid_->particles.dim == 2;
+  const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, K, diagonal_, p, Ap)
+                       : flat               ? apply_recomputed_in<2>(*fluid_, K, diagonal_, p, Ap)
+                                            : apply_recomputed_in<3>(*fluid_, K, diagonal_, p, Ap);
+  if (!added_ || !added_->any()) return energy;
+  added_->add_product(fixed(), p, Ap);
+  return blas::dot(p, Ap, count());
 }
 
 }  // namespace greenwater

@@ -34,8 +34,8 @@ class PressureSystem {
   /// Adds a term to A, or with null takes it away; it must outlive every apply(). The diagonal stays as it is.
   void set_added(const AddedTerm* added) { added_ = added; }
 
-  /// Ap = A p; 0 where the surface is.
-  void apply(const ScalarField& p, const ScalarField& Ap) const;
+  /// Ap = A p; 0 where the surface is. Returns p . A p.
+  accum apply(const ScalarField& p, const ScalarField& Ap) const;
 
   int count() const { return fluid_ ? fluid_->particles.count : 0; }
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]

@@ -96,7 +96,7 @@ Eigen::VectorXd vector_of(const ScalarField& p, int count) {
 // M, one unit vector at a time.
 Eigen::MatrixXd dense(Multigrid& multigrid, const Fluid& fluid) {
   const int n = fluid.particles.count;
-  const FloatField r("greenwater::test_unit", padded(n) + float_lanes), z("greenwater::test_product", r.extent(0));
+  const ScalarField r("greenwater::test_unit", padded(n)), z("greenwater::test_product", r.extent(0));
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
   for (const int j : free_particles(fluid)) {
     const auto unit = Kokkos::create_mirror(r);
@@ -475,10 +475,10 @@ TEST_CASE("particles come and go, and the multigrid forgets where they were", "[
     kept.update(system);
     Multigrid fresh;
     fresh.update(system);
-    const FloatField r("greenwater::test_residual", padded(fluid.particles.count) + float_lanes),
+    const ScalarField r("greenwater::test_residual", padded(fluid.particles.count)),
         z("greenwater::test_kept", r.extent(0)), y("greenwater::test_fresh", r.extent(0));
     const auto values = Kokkos::create_mirror(r);
-    for (const int i : free_particles(fluid)) values(i) = static_cast<float>(std::sin(i));
+    for (const int i : free_particles(fluid)) values(i) = static_cast<real>(std::sin(i));
     Kokkos::deep_copy(r, values);
     kept.apply(r, z);
     fresh.apply(r, y);

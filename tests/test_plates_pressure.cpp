@@ -2,8 +2,8 @@
 // where there is no such plate.
 #include <cmath>
 
+#include "kernels/conjugate_gradient.hpp"
 #include "kernels/pressure_solver.hpp"
-#include "kernels/refined_cg.hpp"
 #include "tests/shapes.hpp"
 
 using namespace greenwater;
@@ -92,7 +92,8 @@ int iterations(Fluid& fluid, Push push = Push::sideways) {
   const PressureSystem system = assembled(fluid, push);
   Multigrid multigrid;
   multigrid.update(system);
-  const SolveReport report = RefinedCg({.tolerance = real(1e-6)}).solve(system, multigrid, zero_pressure(fluid));
+  const SolveReport report =
+      ConjugateGradient({.tolerance = real(1e-6)}).solve(system, multigrid, zero_pressure(fluid));
   CHECK(report.converged);
   return report.iterations;
 }
@@ -111,7 +112,7 @@ void check_iterations(int nx, const std::vector<std::array<coord, 2>>& plate) {
 
 Eigen::MatrixXd preconditioner(Multigrid& multigrid, const Fluid& fluid) {
   const int n = fluid.particles.count;
-  const FloatField r("greenwater::test_unit", padded(n) + float_lanes), z("greenwater::test_product", r.extent(0));
+  const ScalarField r("greenwater::test_unit", padded(n)), z("greenwater::test_product", r.extent(0));
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
   for (const int j : free_particles(fluid)) {
     const auto unit = Kokkos::create_mirror(r);
@@ -214,10 +215,10 @@ TEST_CASE("a plate that moves, comes and goes leaves nothing behind in the multi
     kept.update(system);
     Multigrid fresh;
     fresh.update(system);
-    const FloatField r("greenwater::test_residual", padded(fluid.particles.count) + float_lanes),
+    const ScalarField r("greenwater::test_residual", padded(fluid.particles.count)),
         z("greenwater::test_kept", r.extent(0)), y("greenwater::test_fresh", r.extent(0));
     const auto values = Kokkos::create_mirror(r);
-    for (const int i : free_particles(fluid)) values(i) = static_cast<float>(std::sin(i));
+    for (const int i : free_particles(fluid)) values(i) = static_cast<real>(std::sin(i));
     Kokkos::deep_copy(r, values);
     kept.apply(r, z);
     fresh.apply(r, y);
@@ -231,7 +232,7 @@ TEST_CASE("without a plate wet on both sides nothing is split", "[unit][plates][
     const PressureSystem system = assembled(fluid);
     Multigrid multigrid;
     multigrid.update(system);
-    RefinedCg({}).solve(system, multigrid, zero_pressure(fluid));
+    ConjugateGradient({}).solve(system, multigrid, zero_pressure(fluid));
   };
   Fluid bare = column({25}), parted = column({25, upright(0.0873, 0.06)}), deep = box(8);
   Fluid dry = column({25, {{0.3, 0}, {0.3, 0.2}}});

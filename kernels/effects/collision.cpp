@@ -3,43 +3,86 @@
 namespace greenwater {
 namespace {
 
+constexpr int most_close = 8;  // neighbours in a particle's list; with more of them its whole row is looked at
+
+using NeighbourLists = Kokkos::View<int**, Kokkos::LayoutLeft, Device>;
+
+/// Device view of who is so close that collisions are possible: short lists, as every sweep goes through them.
+template <int Dim>
+struct Close {
+  Around<Dim> near;
+  IndexField number;         // (i) of neighbours
+  NeighbourLists neighbour;  // (i, k)
+  FlagField images;          // (pack) whether any image is that close
+
+  /// Lists neighbours and images of a pack of particles that are closer than `distance`.
+  KOKKOS_INLINE_FUNCTION void find(int i, real distance) const {
+    int found[pack_lanes] = {};
+    near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto&) {
+      const unsigned bits = lane_bits(dot(r, r) < distance * distance);
+      if (bits == 0) return;
+      for (int l = 0; l < pack_lanes; ++l) {
+        if (!(bits >> l & 1)) continue;
+        if (found[l] < most_close) neighbour(i + l, found[l]) = lane(j, l);
+        ++found[l];
+      }
+    });
+    for (int l = 0; l < pack_lanes; ++l) number(i + l) = found[l];
+    bool any = false;
+    near.for_each_image(i, [&](const IndexPack&, const Vec<Dim, Pack>& r, const auto&) {
+      any = any || any_lane(dot(r, r) < distance * distance);
+    });
+    images(i / pack_lanes) = any;
+  }
+
+  /// As Around::for_each(), for these.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void for_each(int i, F f) const {
+    int most = 0;
+    for (int l = 0; l < pack_lanes; ++l) most = larger(most, number(i + l));
+    if (most > most_close) {
+      near.for_each_neighbour(i, f);
+    } else if (most > 0) {
+      const auto xi = load_pack<Dim>(near.x, i);
+      const auto all = load_pack(number, i), self = counted_lanes<IndexPack>() + i;
+      for (int k = 0; k < most; ++k) {
+        const auto j = select(all > k, load_lanes<IndexPack>(&neighbour(i, k)), self);  // at no distance from itself
+        f(j, convert_lanes_of<Pack>(difference(gather_pack<Dim>(near.x, j), xi)), Itself<Dim>{});
+      }
+    }
+    if (images(i / pack_lanes)) near.for_each_image(i, f);
+  }
+};
+
 // Calls f(j, n, speed, so) for particles or images j that a pack of particles collides with, in those lanes where it is so:
 // n points from the one to the other, speed is that of approach.
 template <int Dim, class F>
-KOKKOS_INLINE_FUNCTION void for_each_collision(const Around<Dim>& near, const Read<VectorField>& u, real distance,
+KOKKOS_INLINE_FUNCTION void for_each_collision(const Close<Dim>& close, const Read<VectorField>& u, real distance,
                                                int i, F f) {
   const auto ui = load_pack<Dim>(u, i);
-  near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+  close.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
     const Pack r2 = dot(r, r), share = Pack{} + image.share;
     // Of two images at the edge of a corner the nearer one.
-    const auto close = (r2 < distance * distance) & (r2 > 0) & (share >= real(0.5));
-    if (!any_lane(close)) return;
+    const auto near = (r2 < distance * distance) & (r2 > 0) & (share >= real(0.5));
+    if (!any_lane(near)) return;
     const auto uj = image.velocity(gather_pack<Dim>(u, j));
-    const Pack scale = 1 / sqrt(select(r2 > 0, r2, all_lanes<Pack>(real(1))));
+    const Pack scale = inverse(sqrt(select(near, r2, all_lanes<Pack>(real(1)))));
     const auto n = along(Vec<Dim, Pack>{}, scale, r);
     const Pack approach = dot(difference(ui, uj), n);
-    const auto so = close & (approach > 0);
+    const auto so = near & (approach > 0);
     if (any_lane(so)) f(j, n, approach, so);
   });
 }
 
-// Marks the packs with anybody closer than `distance`.
 template <int Dim>
-void find_crowded_in(const Fluid& fluid, real distance, const FlagField& crowded) {
-  const auto near = around<Dim>(fluid);
+void find_close_in(const Close<Dim>& close, real distance, int count) {
   Kokkos::parallel_for(
-      "greenwater::collision_find_crowded", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
-        bool found = false;
-        near.for_each(pack * pack_lanes, [&](const IndexPack&, const Vec<Dim, Pack>& r, const auto&) {
-          found = found || any_lane(dot(r, r) < distance * distance);
-        });
-        crowded(pack) = found;
-      });
+      "greenwater::collision_find_close", packs(count),
+      KOKKOS_LAMBDA(const int pack) { close.find(pack * pack_lanes, distance); });
 }
 
 template <int Dim>
-int count_collisions_in(const Fluid& fluid, real distance, const FlagField& crowded, const IndexField& number) {
-  const auto near = around<Dim>(fluid);
+int count_collisions_in(const Close<Dim>& close, const Fluid& fluid, real distance, const IndexField& number) {
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const int count = fluid.particles.count;
   int total = 0;
@@ -48,15 +91,13 @@ int count_collisions_in(const Fluid& fluid, real distance, const FlagField& crow
       KOKKOS_LAMBDA(const int pack, int& sum) {
         const int i = pack * pack_lanes;
         Pack collisions{};
-        if (crowded(pack))
-          for_each_collision(near, u, distance, i,
-                             [&](const IndexPack&, const Vec<Dim, Pack>&, const Pack&, const auto& so) {
-                               collisions += zero_unless(so, all_lanes<Pack>(real(1)));
-                             });
-        for (int l = 0; l < pack_lanes && i + l < count; ++l) {
-          number(i + l) = static_cast<int>(lane(collisions, l));
-          sum += number(i + l);
-        }
+        for_each_collision(close, u, distance, i,
+                           [&](const IndexPack&, const Vec<Dim, Pack>&, const Pack&, const auto& so) {
+                             collisions += zero_unless(so, all_lanes<Pack>(real(1)));
+                           });
+        collisions = first_lanes(count - i, collisions);
+        store_lanes(&number(i), convert_lanes<IndexPack>(collisions));
+        sum += static_cast<int>(sum_lanes(collisions));
       },
       total);
   return total;
@@ -65,8 +106,8 @@ int count_collisions_in(const Fluid& fluid, real distance, const FlagField& crow
 // The share of a pair is that of the busier of the two: momentum is kept to the last bit of each pair, and the sum over
 // pairs has no eigenvalue above 2, so that kinetic energy never grows.
 template <int Dim>
-void collide_in(const Fluid& fluid, real distance, real restitution, const IndexField& number, const VectorField& du) {
-  const auto near = around<Dim>(fluid);
+void collide_in(const Close<Dim>& close, const Fluid& fluid, real distance, real restitution, const IndexField& number,
+                const VectorField& du) {
   const auto u = Read<VectorField>(fluid.particles.velocity);
   Kokkos::parallel_for(
       "greenwater::collision", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
@@ -74,7 +115,7 @@ void collide_in(const Fluid& fluid, real distance, real restitution, const Index
         const auto mine = convert_lanes<Pack>(load_pack(number, i));
         Vec<Dim, Pack> change{};
         if (any_lane(mine > 0))
-          for_each_collision(near, u, distance, i,
+          for_each_collision(close, u, distance, i,
                              [&](const IndexPack& j, const Vec<Dim, Pack>& n, const Pack& approach, const auto& so) {
                                const auto busier = larger(mine, convert_lanes<Pack>(gather_pack(number, j)));
                                const Pack share = larger(busier, all_lanes<Pack>(real(1)));
@@ -116,7 +157,9 @@ class Collision : public Effect {
     if (number_.extent(0) < p.id.extent(0)) {
       number_ = uncleared<IndexField>("greenwater::collision_number", p.id.extent(0));
       du_ = uncleared<VectorField>("greenwater::collision_change", p.id.extent(0), p.dim);
-      crowded_ = uncleared<FlagField>("greenwater::collision_crowded", p.id.extent(0));
+      close_ = uncleared<IndexField>("greenwater::collision_close", p.id.extent(0));
+      neighbour_ = uncleared<NeighbourLists>("greenwater::collision_neighbour", p.id.extent(0), most_close);
+      images_ = uncleared<FlagField>("greenwater::collision_images", p.id.extent(0) / pack_lanes);
     }
     p.dim == 2 ? apply_in<2>(fluid, dt) : apply_in<3>(fluid, dt);
   }
@@ -125,21 +168,24 @@ class Collision : public Effect {
   template <int Dim>
   void apply_in(Fluid& fluid, real dt) {
     const real distance = options_.distance * static_cast<real>(fluid.spacing), margin = distance / 10;
-    real left = 0;  // how far particles may still go before others than those in crowded packs can collide [m]
+    real left = 0;  // how far particles may still go before others than those that are close can collide [m]
+    const Close<Dim> close = {around<Dim>(fluid), close_, neighbour_, images_};
     for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
       if (left <= 0) {
-        find_crowded_in<Dim>(fluid, distance + margin, crowded_);
+        find_close_in(close, distance + margin, fluid.particles.count);
         left = margin / 2;
       }
-      if (count_collisions_in<Dim>(fluid, distance, crowded_, number_) == 0) return;
-      collide_in<Dim>(fluid, distance, options_.restitution, number_, du_);
+      if (count_collisions_in(close, fluid, distance, number_) == 0) return;
+      collide_in(close, fluid, distance, options_.restitution, number_, du_);
       left -= move_on_in<Dim>(fluid, du_, dt);
     }
   }
 
   CollisionOptions options_;
-  IndexField number_;
-  FlagField crowded_;  // (pack)
+  IndexField number_;  // (i) of collisions
+  IndexField close_;
+  NeighbourLists neighbour_;
+  FlagField images_;
   VectorField du_;
 };
 
