@@ -42,12 +42,15 @@ Traffic move(const Counts& c) {
   return {moved, places(c) + 2 * vectors(c)};
 }
 
+// What is in the lists of close neighbours is not counted: most particles have none.
 Traffic collision(const Counts& c) {
-  const double look = around(c) + vectors(c) + c.particles * index;  // rows, x, u; number written
+  const double find = around(c) + c.particles * index;  // rows, x; number of the close ones written
+  const double look =
+      places(c) + vectors(c) + 2 * c.particles * index;              // x, u, number of the close ones; number written
   const double collide = look + vectors(c);                          // number read; du written
   const double go_on = 2 * places(c) + 2 * vectors(c) + vectors(c);  // x, u read and written; du
-  return {c.collision_looks * look + c.collision_moves * (collide + go_on),
-          look + (c.collision_moves > 0) * vectors(c)};
+  return {c.collision_finds * find + c.collision_looks * look + c.collision_moves * (collide + go_on),
+          find + look + (c.collision_moves > 0) * vectors(c)};
 }
 
 Traffic sort(const Counts& c) {
@@ -90,22 +93,22 @@ Traffic sum_of(const std::vector<Traffic>& parts) {
 
 Traffic times(double number_of, const Traffic& once) { return {number_of * once.moved, once.touched}; }
 
-// With the diagonal as preconditioner: what is done once.
-Traffic begin_with_diagonal(const Counts& c) {
+// What conjugate gradients do once.
+Traffic begin(const Counts& c) {
   const Traffic product = product_traffic(c, c.keep_weights);
-  const double check = flags(c) + 2 * scalars(c);         // surface; (p, p), (b, b)
-  const double first = (3 + 3 + 2 + 3 + 1) * scalars(c);  // r = b - q; z = r / diagonal; d = z; (r, z), (r, r); max
+  const double check = flags(c) + 2 * scalars(c);  // surface; (p, p), (b, b)
+  const double first = (3 + 1 + 1) * scalars(c);   // r = b - q; (r, r); largest diagonal
   return {check + product.moved + first, product.touched + 2 * scalars(c)};
 }
 
-// One turn of conjugate gradients with it.
-Traffic turn_with_diagonal(const Counts& c) {
+// One turn of them, but for the preconditioner.
+Traffic turn(const Counts& c) {
   const Traffic product = product_traffic(c, c.keep_weights);
-  const double sums = 2 * scalars(c) + scalars(c) + 2 * scalars(c) + scalars(c);  // (d, q), (d, d), (r, z), (r, r)
-  const double updates = 3 * 3 * scalars(c);                                      // p + a d, r - a q, z + b d
-  const double divide = 3 * scalars(c);                                           // r, diagonal; z written
-  return {product.moved + sums + updates + divide, product.touched + 3 * scalars(c)};
+  const double updates = 3 * scalars(c) + 6 * scalars(c);                           // z + b d; p + a d, r - a q
+  return {product.moved + scalars(c) + updates, product.touched + 3 * scalars(c)};  // (d, d)
 }
+
+Traffic divide_by_diagonal(const Counts& c) { return {3 * scalars(c), 3 * scalars(c)}; }  // r, diagonal; z written
 
 // The operator's rows as the multigrid reads them, and a float per particle or node.
 double float_rows(const Counts& c) { return chunks(c) + c.places * (index + weight); }
@@ -133,33 +136,24 @@ Traffic set_up_multigrid(const Counts& c) {
               stencil(c) * c.nodes * weight};
 }
 
-// One turn of conjugate gradients in float: three sums over rows and a V cycle.
-Traffic turn_with_multigrid(const Counts& c) {
+// Two sums over rows in float and a V cycle.
+Traffic cycle(const Counts& c) {
+  const double sweep = scalars(c) + 3 * floats(c);                 // r; 1/A; r, z written
   const double first = 3 * floats(c);                              // 1/A, z; t written
   const double down = c.cells * index + (c.dim + 1) * floats(c) +  // first; place, t
                       (2 * corners(c) + 3) * node_floats(c);       // parts written and read; relax, b, x
   const double levels = (2 * stencil(c) + 15) * c.nodes * weight;  // two stencils; 3 + 4 + 4 + 4 vectors
   const double up = (c.dim + 3) * floats(c) + node_floats(c);      // place, 1/A, z read and written; y
-  const double last = 4 * floats(c);                               // 1/A, r, z; z' written
-  const double direction = 6 * floats(c);                          // z, A; d, q read and written
-  const double solution = 8 * floats(c);                           // d, q, 1/A; x, r read and written; z written
-  return {3 * float_rows(c) + first + down + levels + up + last + direction + solution,
-          float_rows(c) + (8 + c.dim) * floats(c) + corners(c) * node_floats(c) + (stencil(c) + 4) * c.nodes * weight};
-}
-
-// A round begins with r = b - A p in full precision; p + x ends it.
-Traffic around_rounds(const Counts& c) {
-  const Traffic product = product_traffic(c, true);
-  const double check = flags(c) + 2 * scalars(c);  // surface; (p, p), (b, b)
-  const double norm = 2 * scalars(c);              // b, A p
-  const double begin = 2 * scalars(c) + 6 * floats(c), end = 2 * scalars(c) + floats(c);
-  return {check + c.products * (product.moved + norm) + c.rounds * (begin + end), product.touched + scalars(c)};
+  const double last = 3 * floats(c) + scalars(c);                  // 1/A, r, z; z' written
+  return {2 * float_rows(c) + sweep + first + down + levels + up + last,
+          float_rows(c) + (4 + c.dim) * floats(c) + 2 * scalars(c) + corners(c) * node_floats(c) +
+              (stencil(c) + 4) * c.nodes * weight};
 }
 
 Traffic pressure(const Counts& c) {
-  if (c.multigrid)
-    return sum_of({assemble(c), set_up_multigrid(c), around_rounds(c), times(c.iterations, turn_with_multigrid(c))});
-  return sum_of({assemble(c), begin_with_diagonal(c), times(c.iterations, turn_with_diagonal(c))});
+  const Traffic once = sum_of({assemble(c), begin(c)});
+  if (!c.multigrid) return sum_of({once, times(c.iterations, sum_of({turn(c), divide_by_diagonal(c)}))});
+  return sum_of({once, set_up_multigrid(c), times(c.iterations, sum_of({turn(c), cycle(c)}))});
 }
 
 }  // namespace

@@ -21,10 +21,9 @@ struct Counts {
   bool keep_weights = true;
   bool multigrid = false;      // the preconditioner of the pressure; else the diagonal
   double iterations = 0;       // of the pressure solve
-  double rounds = 0;           // of its iterations in float
-  double products = 0;         // A p in full precision
   double first_nodes = 0;      // of the multigrid's first level, as far as they are in use
   double nodes = 0;            // of all levels
+  double collision_finds = 0;  // searches for those that are close
   double collision_looks = 0;  // sweeps that count collisions ...
   double collision_moves = 0;  // ... and those that found some
 };

@@ -65,8 +65,7 @@ Overview look(Water& water, Listener& listener, int steps) {
   overview.memory = static_cast<double>(listener.bytes());
   for (const auto& [label, number] : listener.launches_by_label())
     overview.launches_by_label[label] = part * static_cast<double>(number);
-  overview.counts.rounds = part * static_cast<double>(listener.launches("greenwater::cg_begin_round"));
-  overview.counts.products = part * static_cast<double>(listener.launches("greenwater::apply_pressure"));
+  overview.counts.collision_finds = part * static_cast<double>(listener.launches("greenwater::collision_find_close"));
   overview.counts.collision_looks = part * static_cast<double>(listener.launches("greenwater::count_collisions"));
   overview.counts.collision_moves = part * static_cast<double>(listener.launches("greenwater::collision"));
   return overview;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "kernels/density.hpp"
-#include "kernels/pressure_system.hpp"
+#include "kernels/preconditioner.hpp"
 #include "tests/catch.hpp"
 
 namespace greenwater::test {
@@ -166,6 +166,31 @@ inline Eigen::MatrixXd dense(const PressureSystem& system) {
     for (int i = 0; i < n; ++i) matrix(i, j) = column(i);
   }
   return matrix;
+}
+
+/// Particles whose pressure is unknown.
+inline std::vector<int> free_particles(const Fluid& fluid) {
+  const auto surface = host(fluid.particles.surface);
+  std::vector<int> found;
+  for (int i = 0; i < fluid.particles.count; ++i)
+    if (!surface(i)) found.push_back(i);
+  return found;
+}
+
+/// The preconditioner as a dense matrix, one unit vector at a time; 0 at the surface.
+inline Eigen::MatrixXd dense(const Preconditioner& preconditioner, const Fluid& fluid) {
+  const int n = fluid.particles.count;
+  const ScalarField r("greenwater::test_unit", padded(n)), z("greenwater::test_product", padded(n));
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
+  for (const int j : free_particles(fluid)) {
+    const auto unit = Kokkos::create_mirror(r);
+    unit(j) = 1;
+    Kokkos::deep_copy(r, unit);
+    preconditioner.apply(r, z);
+    const auto column = host(z);
+    for (int i = 0; i < n; ++i) M(i, j) = column(i);
+  }
+  return M;
 }
 
 /// Listens to Kokkos: the labels of all launches and of all allocations while it lives. One at a time.

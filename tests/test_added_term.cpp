@@ -28,14 +28,6 @@ PressureSystem assembled(const Fluid& fluid) {
   return system;
 }
 
-std::vector<int> free_particles(const Fluid& fluid) {
-  const auto surface = host(fluid.particles.surface);
-  std::vector<int> found;
-  for (int i = 0; i < fluid.particles.count; ++i)
-    if (!surface(i)) found.push_back(i);
-  return found;
-}
-
 // D and C of some unknowns, and D C D^T.
 struct Term {
   std::vector<AddedEntry> D;

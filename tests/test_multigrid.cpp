@@ -74,14 +74,6 @@ void set_falling(Fluid& fluid) {
   Kokkos::deep_copy(fluid.particles.velocity, u);
 }
 
-std::vector<int> free_particles(const Fluid& fluid) {
-  const auto surface = host(fluid.particles.surface);
-  std::vector<int> found;
-  for (int i = 0; i < fluid.particles.count; ++i)
-    if (!surface(i)) found.push_back(i);
-  return found;
-}
-
 ScalarField zero_pressure(const Fluid& fluid) {
   return ScalarField("greenwater::test_pressure", fluid.particles.id.extent(0));
 }
@@ -91,22 +83,6 @@ Eigen::VectorXd vector_of(const ScalarField& p, int count) {
   Eigen::VectorXd v(count);
   for (int i = 0; i < count; ++i) v(i) = values(i);
   return v;
-}
-
-// M, one unit vector at a time.
-Eigen::MatrixXd dense(Multigrid& multigrid, const Fluid& fluid) {
-  const int n = fluid.particles.count;
-  const ScalarField r("greenwater::test_unit", padded(n)), z("greenwater::test_product", r.extent(0));
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-  for (const int j : free_particles(fluid)) {
-    const auto unit = Kokkos::create_mirror(r);
-    unit(j) = 1;
-    Kokkos::deep_copy(r, unit);
-    multigrid.apply(r, z);
-    const auto column = host(z);
-    for (int i = 0; i < n; ++i) M(i, j) = column(i);
-  }
-  return M;
 }
 
 void check_symmetric_and_near_inverse(const Fluid& fluid, double least, double most) {

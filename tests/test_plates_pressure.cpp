@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "kernels/conjugate_gradient.hpp"
+#include "kernels/multigrid.hpp"
 #include "kernels/pressure_solver.hpp"
 #include "tests/shapes.hpp"
 
@@ -80,14 +81,6 @@ ScalarField zero_pressure(const Fluid& fluid) {
   return ScalarField("greenwater::test_pressure", fluid.particles.id.extent(0));
 }
 
-std::vector<int> free_particles(const Fluid& fluid) {
-  const auto surface = host(fluid.particles.surface);
-  std::vector<int> found;
-  for (int i = 0; i < fluid.particles.count; ++i)
-    if (!surface(i)) found.push_back(i);
-  return found;
-}
-
 int iterations(Fluid& fluid, Push push = Push::sideways) {
   const PressureSystem system = assembled(fluid, push);
   Multigrid multigrid;
@@ -110,21 +103,6 @@ void check_iterations(int nx, const std::vector<std::array<coord, 2>>& plate) {
   }
 }
 
-Eigen::MatrixXd preconditioner(Multigrid& multigrid, const Fluid& fluid) {
-  const int n = fluid.particles.count;
-  const ScalarField r("greenwater::test_unit", padded(n)), z("greenwater::test_product", r.extent(0));
-  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
-  for (const int j : free_particles(fluid)) {
-    const auto unit = Kokkos::create_mirror(r);
-    unit(j) = 1;
-    Kokkos::deep_copy(r, unit);
-    multigrid.apply(r, z);
-    const auto column = host(z);
-    for (int i = 0; i < n; ++i) M(i, j) = column(i);
-  }
-  return M;
-}
-
 // M is symmetric, positive, and so near the inverse as without a plate.
 void check_preconditioner(Fluid fluid) {
   const PressureSystem system = assembled(fluid);
@@ -132,7 +110,7 @@ void check_preconditioner(Fluid fluid) {
   multigrid.update(system);
   const std::vector<int> active = free_particles(fluid);
   REQUIRE(active.size() > 300);
-  const Eigen::MatrixXd M = preconditioner(multigrid, fluid)(active, active);
+  const Eigen::MatrixXd M = dense(multigrid, fluid)(active, active);
   CHECK((M - M.transpose()).cwiseAbs().maxCoeff() <= 1e-6 * M.cwiseAbs().maxCoeff());
   const Eigen::LLT<Eigen::MatrixXd> factors(dense(system)(active, active) / system.factor());
   REQUIRE(factors.info() == Eigen::Success);
