@@ -14,6 +14,8 @@ struct Close {
   IndexField number;         // (i) of neighbours
   NeighbourLists neighbour;  // (i, k)
   FlagField images;          // (pack) whether any image is that close
+  ScalarField way;           // (i) how far it has gone since lists with it were made, at most [m]
+  IndexField stale;          // (pack) whether its lists are to be made anew
 
   /// Lists neighbours and images of a pack of particles that are closer than `distance`.
   KOKKOS_INLINE_FUNCTION void find(int i, real distance) const {
@@ -33,6 +35,19 @@ struct Close {
       any = any || any_lane(dot(r, r) < distance * distance);
     });
     images(i / pack_lanes) = any;
+  }
+
+  /// Tells everybody around those of a pack of particles that have gone too far.
+  KOKKOS_INLINE_FUNCTION void tell(int i, real too_far) const {
+    const Pack gone = load_pack(way, i);
+    const unsigned bits = lane_bits(gone > too_far);
+    if (bits == 0) return;
+    store_lanes(&way(i), zero_unless(gone <= too_far, gone));
+    Kokkos::atomic_fetch_or(&stale(i / pack_lanes), 1);
+    near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>&, const auto&) {
+      for (int l = 0; l < pack_lanes; ++l)
+        if (bits >> l & 1) Kokkos::atomic_fetch_or(&stale(lane(j, l) / pack_lanes), 1);
+    });
   }
 
   /// As Around::for_each(), for these.
@@ -77,8 +92,25 @@ KOKKOS_INLINE_FUNCTION void for_each_collision(const Close<Dim>& close, const Re
 template <int Dim>
 void find_close_in(const Close<Dim>& close, real distance, int count) {
   Kokkos::parallel_for(
-      "greenwater::collision_find_close", packs(count),
-      KOKKOS_LAMBDA(const int pack) { close.find(pack * pack_lanes, distance); });
+      "greenwater::collision_find_close", packs(count), KOKKOS_LAMBDA(const int pack) {
+        close.find(pack * pack_lanes, distance);
+        store_lanes(&close.way(pack * pack_lanes), Pack{});
+        close.stale(pack) = 0;
+      });
+}
+
+// The same where somebody came or went farther than `too_far`.
+template <int Dim>
+void find_close_again_in(const Close<Dim>& close, real distance, real too_far, int count) {
+  Kokkos::parallel_for(
+      "greenwater::collision_tell", packs(count),
+      KOKKOS_LAMBDA(const int pack) { close.tell(pack * pack_lanes, too_far); });
+  Kokkos::parallel_for(
+      "greenwater::collision_find_again", packs(count), KOKKOS_LAMBDA(const int pack) {
+        if (!close.stale(pack)) return;
+        close.find(pack * pack_lanes, distance);
+        close.stale(pack) = 0;
+      });
 }
 
 template <int Dim>
@@ -125,12 +157,12 @@ void collide_in(const Close<Dim>& close, const Fluid& fluid, real distance, real
       });
 }
 
-// Returns how far the one went that went farthest [m].
+// Returns the longest way that anybody has gone [m].
 template <int Dim>
-real move_on_in(const Fluid& fluid, const VectorField& du, real dt) {
+real move_on_in(const Fluid& fluid, const VectorField& du, real dt, const ScalarField& way) {
   const auto x = fluid.particles.position;
   const auto u = fluid.particles.velocity;
-  real farthest2 = 0;
+  real longest = 0;
   Kokkos::parallel_reduce(
       "greenwater::collision_move", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, real& most) {
@@ -141,10 +173,11 @@ real move_on_in(const Fluid& fluid, const VectorField& du, real dt) {
           u(i, d) += change[d];
           x(i, d) += dt * change[d];
         }
-        most = larger(most, change2);
+        way(i) += dt * sqrt(change2);
+        most = larger(most, way(i));
       },
-      Kokkos::Max<real>(farthest2));
-  return dt * sqrt(farthest2);
+      Kokkos::Max<real>(longest));
+  return longest;
 }
 
 class Collision : public Effect {
@@ -160,6 +193,8 @@ class Collision : public Effect {
       close_ = uncleared<IndexField>("greenwater::collision_close", p.id.extent(0));
       neighbour_ = uncleared<NeighbourLists>("greenwater::collision_neighbour", p.id.extent(0), most_close);
       images_ = uncleared<FlagField>("greenwater::collision_images", p.id.extent(0) / pack_lanes);
+      way_ = uncleared<ScalarField>("greenwater::collision_way", p.id.extent(0));
+      stale_ = uncleared<IndexField>("greenwater::collision_stale", p.id.extent(0) / pack_lanes);
     }
     p.dim == 2 ? apply_in<2>(fluid, dt) : apply_in<3>(fluid, dt);
   }
@@ -167,17 +202,16 @@ class Collision : public Effect {
  private:
   template <int Dim>
   void apply_in(Fluid& fluid, real dt) {
+    // Two can only collide unlisted after one of them has gone half the margin.
     const real distance = options_.distance * static_cast<real>(fluid.spacing), margin = distance / 10;
-    real left = 0;  // how far particles may still go before others than those that are close can collide [m]
-    const Close<Dim> close = {around<Dim>(fluid), close_, neighbour_, images_};
-    for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-      if (left <= 0) {
-        find_close_in(close, distance + margin, fluid.particles.count);
-        left = margin / 2;
-      }
-      if (count_collisions_in(close, fluid, distance, number_) == 0) return;
+    const int count = fluid.particles.count;
+    const Close<Dim> close = {around<Dim>(fluid), close_, neighbour_, images_, way_, stale_};
+    find_close_in(close, distance + margin, count);
+    for (int sweep = 1; count_collisions_in(close, fluid, distance, number_) > 0; ++sweep) {
       collide_in(close, fluid, distance, options_.restitution, number_, du_);
-      left -= move_on_in<Dim>(fluid, du_, dt);
+      const real longest = move_on_in<Dim>(fluid, du_, dt, way_);
+      if (sweep == options_.sweeps) return;
+      if (longest > margin / 2) find_close_again_in(close, distance + margin, margin / 2, count);
     }
   }
 
@@ -186,6 +220,8 @@ class Collision : public Effect {
   IndexField close_;
   NeighbourLists neighbour_;
   FlagField images_;
+  ScalarField way_;
+  IndexField stale_;
   VectorField du_;
 };
 
