@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
-#include <functional>
 
 #include "bench/bytes.hpp"
 #include "bench/measure.hpp"
@@ -14,14 +12,6 @@
 
 namespace greenwater::bench {
 namespace {
-
-double ms_of(const std::function<void()>& work) {
-  Kokkos::fence();
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  Kokkos::fence();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 /// The equation of one state, for one way of solving it.
 struct Problem {

@@ -1,7 +1,10 @@
 #include "bench/spread.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+
+#include "core/kokkos.hpp"
 
 namespace greenwater::bench {
 namespace {
@@ -19,6 +22,14 @@ Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
   return {quantile(values, 0.5), values.front(), values.back(), quantile(values, 0.25), quantile(values, 0.75)};
+}
+
+double ms_of(const std::function<void()>& work) {
+  Kokkos::fence();
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  Kokkos::fence();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 }  // namespace greenwater::bench

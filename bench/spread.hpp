@@ -1,6 +1,7 @@
 #pragma once
-// Many measurements of one thing, in a few numbers.
+// Measuring time, and many measurements of one thing in a few numbers.
 
+#include <functional>
 #include <vector>
 
 namespace greenwater::bench {
@@ -12,5 +13,8 @@ struct Spread {
 
 /// Quantiles with straight lines between the values; all zero when there is none.
 Spread spread_of(std::vector<double> values);
+
+/// Wall time of some work, its kernels included [ms].
+double ms_of(const std::function<void()>& work);
 
 }  // namespace greenwater::bench

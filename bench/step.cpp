@@ -79,6 +79,19 @@ void time_round(Water& water, int steps, Samples& samples) {
   }
 }
 
+/// The rows, built in one pass on a host and as on a GPU.
+struct BothWays {
+  std::vector<double> one_pass, portable;  // [ms]
+};
+
+void time_both_ways(Water& water, BothWays& rows) {
+  water.sort();
+  for (int k = 0; k < 3; ++k) {
+    rows.one_pass.push_back(ms_of([&] { water.build_rows(false); }));
+    rows.portable.push_back(ms_of([&] { water.build_rows(true); }));
+  }
+}
+
 const RegionModel& model_of(const std::string& region) {
   static const RegionModel unknown{"", "step", nullptr};
   for (const RegionModel& model : region_models())
@@ -194,6 +207,7 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
   const Scene scene = bench_scene(size, sets_of(options));
   Overview overview;
   Samples samples;
+  BothWays both;
   {
     auto listener = std::make_unique<Listener>();
     Water water(scene, state);
@@ -204,6 +218,7 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
     for (int round = 0; round < options.rounds; ++round) {
       water.put(state);
       time_round(water, options.steps, samples);
+      if (on_host) time_both_ways(water, both);
       measure_triads(overview.counts, triads);
     }
   }
@@ -214,11 +229,16 @@ void measure(const BenchOptions& options, const Size& size, const std::string& n
     Json row = region_row(base, region, spread_of(samples.at(region)), overview, triads);
     if (region == "step") {
       add_overview(row, scene, overview);
+      row["rows_one_pass_ms"] = spread_of(both.one_pass).median;
+      row["rows_portable_ms"] = spread_of(both.portable).median;
       print_head(row);
     }
     print_row(row);
     rows.push_back(row);
   }
+  if (on_host)
+    fmt::print("  rows, in turn: in one pass {} ms, as on a GPU {} ms\n", figure(spread_of(both.one_pass).median),
+               figure(spread_of(both.portable).median));
   std::fflush(stdout);
 }
 

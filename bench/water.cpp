@@ -144,6 +144,14 @@ StepReport Water::step() {
   return report;
 }
 
+void Water::sort() { fluid_.grid.sort(fluid_.particles); }
+
+void Water::build_rows(bool portable) {
+  RowOptions options = row_options(fluid_);
+  options.portable = portable;
+  fluid_.rows.build(fluid_.particles, fluid_.grid, fluid_.walls, options);
+}
+
 State Water::state() const {
   const Particles& p = fluid_.particles;
   State state;

@@ -21,6 +21,11 @@ class Water {
   /// One step, in a region "step". Throws NumericsError when it fails.
   StepReport step();
 
+  /// Sorts the particles into the grid as a step does, for build_rows().
+  void sort();
+  /// The rows of where the particles were sorted; `portable` the way they are built on GPUs.
+  void build_rows(bool portable);
+
   State state() const;
   double time() const { return fluid_.time; }
   std::int64_t steps() const { return steps_; }
