@@ -151,7 +151,7 @@ class ChunkBuilder {
       if (seen.entry < 0) density_[seen.lane] += seen.share * search_.density(std::sqrt(seen.r2));
   }
 
-  void write(const RowStore& store, const ScalarField& n) const {
+  void write(const RowStore& store, const ScalarField& n, int more, Reserve& reserve) const {
     const int chunk = begin_ / row_lanes;
     int longest = 0, most_images = 0, neighbours = 0, mirrored = 0;
     for (int lane = 0; lane < row_lanes; ++lane) {
@@ -166,7 +166,7 @@ class ChunkBuilder {
       if (lane < rows_) n(i) = static_cast<real>(density_[lane]);
     }
     store.count(neighbours, mirrored);
-    const auto place = store.take_near(chunk, longest);
+    const auto place = store.take_near(chunk, longest, more, reserve);
     if (place >= 0) write_entries(store.near, place, longest);
     if (search_.walls.count == 0) return;
     const auto image_place = store.take_images(chunk, most_images);
@@ -294,11 +294,17 @@ class ChunkBuilder {
 
 template <int Dim>
 void build_in(const RowSearch<Dim>& search, const RowStore& store, const ScalarField& n, int count) {
-  Kokkos::parallel_for("greenwater::build_rows", Range(0, chunks_of(count)), [=](const int chunk) {
-    ChunkBuilder<Dim> rows(search, chunk, count);
-    rows.find();
-    rows.weigh();
-    rows.write(store, n);
+  constexpr int together = 16;  // chunks whose rows follow each other
+  const int chunks = chunks_of(count);
+  Kokkos::parallel_for("greenwater::build_rows", Range(0, (chunks + together - 1) / together), [=](const int block) {
+    const int begin = block * together, end = smaller(begin + together, chunks);
+    Reserve reserve;
+    for (int chunk = begin; chunk < end; ++chunk) {
+      ChunkBuilder<Dim> rows(search, chunk, count);
+      rows.find();
+      rows.weigh();
+      rows.write(store, n, end - chunk - 1, reserve);
+    }
   });
 }
 

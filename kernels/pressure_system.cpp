@@ -75,12 +75,16 @@ accum apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const 
   const int count = fluid.particles.count;
   accum energy = 0;
   Kokkos::parallel_reduce(
-      "greenwater::apply_pressure", packs(count),
-      KOKKOS_LAMBDA(const int pack, accum& sum) {
-        const int i = pack * pack_lanes;
-        const Pack own = first_lanes(count - i, load_pack(p, i));
-        sum +=
-            sum_lanes(own * store_product(fixed, K, diagonal, own, row_product<Pack>(near, p.data(), i), i, count, Ap));
+      "greenwater::apply_pressure", row_packs(count),
+      KOKKOS_LAMBDA(const int rows, accum& energy_of_all) {
+        constexpr int parts = float_lanes / pack_lanes;  // all rows of a chunk at once, as they share cache lines
+        Pack sum[parts] = {};
+        add_row_products(near, p.data(), rows * float_lanes, sum);
+        for (int part = 0; part < parts; ++part) {
+          const int i = rows * float_lanes + part * pack_lanes;
+          const Pack own = first_lanes(count - i, load_pack(p, i));
+          energy_of_all += sum_lanes(own * store_product(fixed, K, diagonal, own, sum[part], i, count, Ap));
+        }
       },
       energy);
   return energy;

@@ -49,13 +49,15 @@ struct ImageRows {
 /// Kernels over packs of float_lanes rows; pack k begins with row float_lanes k.
 inline Range row_packs(int count) { return Range(0, (count + float_lanes - 1) / float_lanes); }
 
-constexpr int entries_ahead = 24;  // that are fetched before they are needed, about a row of 2-D
+// Entries that are fetched before they are needed, about a row of 2-D: two streams and a gather are too much for the CPU's
+// own prefetching.
+constexpr int entries_ahead = 24;
 
-/// sum_j w_ij x_j of the rows from i on, as many as V has lanes.
+/// Adds sum_j w_ij x_j of the rows from i on, as many as `sum` has lanes.
 /// One work item has a vector of rows on a CPU (one row each is four times slower) and one row on a GPU; the data are the
 /// same.
-template <class V, class T>
-KOKKOS_INLINE_FUNCTION V row_product(const Rows& rows, const T* x, int i) {
+template <class V, int parts, class T>
+KOKKOS_INLINE_FUNCTION void add_row_products(const Rows& rows, const T* x, int i, V (&sum)[parts]) {
   constexpr int width = static_cast<int>(sizeof(V) / sizeof(T));
   using Index = Lanes<int, width>;
   using Weights = Lanes<float, width>;
@@ -63,14 +65,20 @@ KOKKOS_INLINE_FUNCTION V row_product(const Rows& rows, const T* x, int i) {
   const auto begin = rows.place(i, 0);
   const int* index = rows.index.data() + begin;
   const float* weight = rows.weight.data() + begin;
-  V sum{};
   for (int k = 0; k < length; ++k, index += row_lanes, weight += row_lanes) {
-    prefetch(index +
-             entries_ahead * row_lanes);  // the CPU's own prefetching is at its end with two streams and a gather
+    prefetch(index + entries_ahead * row_lanes);
     prefetch(weight + entries_ahead * row_lanes);
-    sum += convert_lanes<V>(load_lanes<Weights>(weight)) * gather_lanes<V>(x, load_lanes<Index>(index));
+    for (int part = 0; part < parts; ++part)
+      sum[part] += convert_lanes<V>(load_lanes<Weights>(weight + part * width)) *
+                   gather_lanes<V>(x, load_lanes<Index>(index + part * width));
   }
-  return sum;
+}
+
+template <class V, class T>
+KOKKOS_INLINE_FUNCTION V row_product(const Rows& rows, const T* x, int i) {
+  V sum[1] = {};
+  add_row_products(rows, x, i, sum);
+  return sum[0];
 }
 
 }  // namespace greenwater
