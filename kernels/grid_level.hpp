@@ -61,6 +61,18 @@ struct Item {
 
 KOKKOS_INLINE_FUNCTION int items(const Level& level) { return level.active * items_of_pack; }
 
+/// How far apart the rows of a dense matrix lie: so that packs of rows can be read from any of them.
+constexpr int dense_stride(int size) { return (size + node_lanes - 1) / node_lanes * node_lanes; }
+
+/// Rows from `row` on of a symmetric dense matrix times a vector, whose entry c is value(c).
+template <class F>
+KOKKOS_INLINE_FUNCTION FloatPack dense_product(const float* matrix, int size, int row, F value) {
+  const int stride = dense_stride(size);
+  FloatPack sum{};
+  for (int c = 0; c < size; ++c) sum += value(c) * load_lanes<FloatPack>(matrix + c * stride + row);
+  return sum;
+}
+
 /// A x of an item's nodes.
 template <int Dim>
 KOKKOS_INLINE_FUNCTION FloatPack stencil_product(const Level& level, const Item& at) {

@@ -5,11 +5,10 @@
 #include <limits>
 
 #include "core/check.hpp"
-#include "kernels/dense_inverse.hpp"
 
 namespace greenwater {
 
-static_assert(coarsest_nodes <= largest_dense);
+static_assert(dense_stride(coarsest_nodes) == coarsest_nodes);
 
 namespace {
 
@@ -194,10 +193,11 @@ KOKKOS_INLINE_FUNCTION void for_items(const Member& team, const Level& level, co
 // y = A^-1 b on the last level.
 KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& stack) {
   const Level& last = stack.level[stack.count - 1];
-  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, stack.unknowns), [&](const int row) {
-    float sum = 0;
-    for (int c = 0; c < stack.unknowns; ++c) sum += stack.inverse[row * stack.unknowns + c] * last.b[stack.value[c]];
-    last.y[stack.position[row]] = sum;
+  const int count = stack.unknowns;
+  Kokkos::parallel_for(Kokkos::TeamThreadRange(team, (count + float_lanes - 1) / float_lanes), [&](const int pack) {
+    const int row = pack * float_lanes;
+    const auto y = dense_product(stack.inverse, count, row, [&](const int c) { return last.b[stack.value[c]]; });
+    for (int l = 0; l < float_lanes && row + l < count; ++l) last.y[stack.position[row + l]] = lane(y, l);
   });
   team.team_barrier();
 }
@@ -273,11 +273,9 @@ Unknowns unknowns_of(const Level& level, int size) {
   return found;
 }
 
-using DenseMatrix = std::array<double, coarsest_nodes * coarsest_nodes>;
-
-DenseMatrix matrix_of(const Level& level, const Unknowns& unknowns, int dim) {
-  DenseMatrix A;
-  A.fill(0);
+// A(row, column)
+void fill_matrix(const Level& level, const Unknowns& unknowns, int dim, std::vector<double>& A) {
+  A.assign(static_cast<std::size_t>(unknowns.count) * unknowns.count, 0.0);
   const int deep = dim == 3 ? reach : 0;
   const auto outside = [&](int axis, int n) { return n < 0 || n >= level.nodes[axis]; };
   for (int row = 0; row < unknowns.count; ++row) {
@@ -291,7 +289,6 @@ DenseMatrix matrix_of(const Level& level, const Unknowns& unknowns, int dim) {
           if (column >= 0) A[row * unknowns.count + column] = *entry;
         }
   }
-  return A;
 }
 
 template <class Field>
@@ -412,14 +409,16 @@ bool GridLevels::invert_last() {
   last.stencil = host_stencil_[l].data();
   const Unknowns unknowns = unknowns_of(last, stencil_size(dim_));
   if (unknowns.count > coarsest_nodes) return false;
-  DenseMatrix matrix = matrix_of(last, unknowns, dim_);
-  invert_in_place(matrix.data(), unknowns.count);
+  fill_matrix(last, unknowns, dim_, dense_);
+  dense_inverse_.invert(dense_.data(), unknowns.count);
   stack_.unknowns = unknowns.count;
   for (int row = 0; row < unknowns.count; ++row) {
     host_value_(row) = unknowns.node[row].value;
     host_position_(row) = unknowns.node[row].position;
   }
-  for (int e = 0; e < unknowns.count * unknowns.count; ++e) host_inverse_(e) = static_cast<float>(matrix[e]);
+  const int stride = dense_stride(unknowns.count);
+  for (int row = 0; row < unknowns.count; ++row)
+    std::copy_n(&dense_[row * unknowns.count], unknowns.count, &host_inverse_(row * stride));
   Kokkos::deep_copy(last_value_, host_value_);
   Kokkos::deep_copy(last_position_, host_position_);
   Kokkos::deep_copy(inverse_, host_inverse_);

@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "kernels/cell_grid.hpp"
+#include "kernels/dense_inverse.hpp"
 #include "kernels/grid_level.hpp"
 
 namespace greenwater {
 
 constexpr int most_levels = 16;      // enough for 2^15 nodes along an axis
-constexpr int coarsest_nodes = 128;  // with fluid: solved directly from here on
+constexpr int coarsest_nodes = 256;  // with fluid: solved directly from here on
 
 /// Levels as kernels take them, by value.
 struct LevelStack {
@@ -18,7 +19,7 @@ struct LevelStack {
   int count = 0;
   // Of the last level: its matrix' inverse, and where its nodes are.
   int unknowns = 0;
-  const float* inverse = nullptr;  // (row, column)
+  const float* inverse = nullptr;  // (row, column), rows dense_stride(unknowns) apart
   const int* value = nullptr;      // (node) in fields (slot, lane)
   const int* position = nullptr;   // (node)
 };
@@ -67,6 +68,8 @@ class GridLevels {
   std::vector<FloatField::host_mirror_type> host_stencil_;
   IndexField::host_mirror_type host_value_, host_position_;
   FloatField::host_mirror_type host_inverse_;
+  std::vector<double> dense_;
+  DenseInverse dense_inverse_;
   int levels_ = 0;  // that there are; those of the stack are in use
   int small_ = 0;   // first of the levels that one launch does together
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/check.hpp"
-#include "kernels/dense_inverse.hpp"
 #include "kernels/split_rows.hpp"
 #include "kernels/split_sides.hpp"
 
@@ -26,15 +25,17 @@ KOKKOS_INLINE_FUNCTION void solve_last(const Member& team, const LevelStack& sta
   const Splits& s = splits.level[stack.count - 1];
   const int nodes = stack.unknowns, count = nodes + splits.last_count;
   for_each(team, 1, s.count + 1, [&](const int number) { s.e[number] = 0; });
-  for_each(team, 0, count, [&](const int row) {
-    const float* inverse = splits.inverse + row * count;
-    float sum = 0;
-    for (int c = 0; c < nodes; ++c) sum += inverse[c] * last.b[stack.value[c]];
-    for (int c = nodes; c < count; ++c) sum += inverse[c] * s.b[splits.last[c - nodes]];
-    if (row < nodes)
-      last.y[stack.position[row]] = sum;
-    else
-      s.e[splits.last[row - nodes]] = sum;
+  for_each(team, 0, (count + float_lanes - 1) / float_lanes, [&](const int pack) {
+    const int row = pack * float_lanes;
+    const auto solution = dense_product(splits.inverse, count, row, [&](const int c) {
+      return c < nodes ? last.b[stack.value[c]] : s.b[splits.last[c - nodes]];
+    });
+    for (int l = 0; l < float_lanes && row + l < count; ++l) {
+      if (row + l < nodes)
+        last.y[stack.position[row + l]] = lane(solution, l);
+      else
+        s.e[splits.last[row + l - nodes]] = lane(solution, l);
+    }
   });
 }
 
@@ -338,8 +339,9 @@ void SplitNodes::update(const Fluid& fluid, const Seats& seats, const FloatSyste
 
 void SplitNodes::invert_last(const LevelStack& stack) {
   const int nodes = stack.unknowns, all = nodes + stack_.level[stack.count - 1].count;
-  if (static_cast<int>(inverse_.extent(0)) < all * all) {
-    grow(inverse_, "greenwater::split_inverse", all * all);
+  const int room = all * dense_stride(all);
+  if (static_cast<int>(inverse_.extent(0)) < room) {
+    grow(inverse_, "greenwater::split_inverse", room);
     host_inverse_ = Kokkos::create_mirror_view(inverse_);
     stack_.inverse = inverse_.data();
   }
@@ -352,8 +354,9 @@ void SplitNodes::invert_last(const LevelStack& stack) {
   for (int row = 0; row < count; ++row)
     for (int column = 0; column < count; ++column)
       dense_[row * count + column] = host_inverse_(place(row) * all + place(column));
-  invert_in_place(dense_.data(), count);
-  std::copy(dense_.begin(), dense_.end(), host_inverse_.data());
+  dense_inverse_.invert(dense_.data(), count);
+  for (int row = 0; row < count; ++row)
+    std::copy_n(&dense_[row * count], count, &host_inverse_(row * dense_stride(count)));
   Kokkos::deep_copy(inverse_, host_inverse_);
   upload(last_, "greenwater::split_last", present);
   stack_.last = last_.data();

@@ -14,7 +14,7 @@ struct SplitStack {
   Splits level[most_levels];
   // Of the last level: its matrix' inverse, and which splits are in it.
   int last_count = 0;
-  const float* inverse = nullptr;  // (row, column) nodes, then splits
+  const float* inverse = nullptr;  // (row, column) nodes, then splits; rows dense_stride() apart
   const int* last = nullptr;       // numbers
 };
 
@@ -62,6 +62,7 @@ class SplitNodes {
   FloatField inverse_;
   FloatField::host_mirror_type host_inverse_;
   std::vector<double> dense_;
+  DenseInverse dense_inverse_;
 };
 
 }  // namespace greenwater
