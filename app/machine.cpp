@@ -5,8 +5,14 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <limits>
+
+// There where Kokkos brings OpenMP. With OMP_PROC_BIND the first thread is bound to one processor before main() begins, and
+// only OpenMP still knows of how many.
+extern "C" int omp_get_num_procs() __attribute__((weak));
 
 namespace greenwater {
 namespace {
@@ -46,9 +52,17 @@ std::string processor_name() {
 }
 
 int machine_processors() {
+  if (omp_get_num_procs) return omp_get_num_procs();
   cpu_set_t set;
   if (sched_getaffinity(0, sizeof set, &set) == 0) return CPU_COUNT(&set);
   return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+void leave_processor() {
+  if (!std::getenv("OMP_PROC_BIND")) return;
+  cpu_set_t all;
+  std::memset(&all, 0xff, sizeof all);  // the system takes away what this process may not use
+  sched_setaffinity(0, sizeof all, &all);
 }
 
 }  // namespace greenwater

@@ -14,4 +14,7 @@ std::string processor_name();
 /// Processors that this program may use.
 int machine_processors();
 
+/// Takes back what OMP_PROC_BIND did to the first thread: for a program that is to be started now and binds itself.
+void leave_processor();
+
 }  // namespace greenwater

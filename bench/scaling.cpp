@@ -39,6 +39,7 @@ void run_self(std::vector<std::string> words) {
   argv.push_back(nullptr);
   const pid_t child = fork();
   if (child == 0) {
+    leave_processor();
     execv(self.c_str(), argv.data());
     _exit(127);
   }
