@@ -2,6 +2,7 @@
 // What tests share: clouds of particles, fluids without a case file, dense matrices, and ears for Kokkos.
 
 #include <Eigen/Dense>
+#include <cmath>
 #include <random>
 #include <set>
 #include <string>
@@ -191,6 +192,46 @@ inline Eigen::MatrixXd dense(const Preconditioner& preconditioner, const Fluid& 
     for (int i = 0; i < n; ++i) M(i, j) = column(i);
   }
   return M;
+}
+
+/// Anything at the particles whose pressure is unknown, and 0 elsewhere.
+inline ScalarField random_residual(const Fluid& fluid, unsigned seed) {
+  std::mt19937 generator(seed);
+  std::normal_distribution<double> any;
+  const ScalarField r("greenwater::test_residual", padded(fluid.particles.count));
+  const auto values = Kokkos::create_mirror(r);
+  for (const int i : free_particles(fluid)) values(i) = static_cast<real>(any(generator));
+  Kokkos::deep_copy(r, values);
+  return r;
+}
+
+/// a . M b is b . M a, and what apply() returns.
+inline void check_symmetric(const Preconditioner& preconditioner, const Fluid& fluid) {
+  const ScalarField a = random_residual(fluid, 5), b = random_residual(fluid, 6), z("greenwater::test_z", a.extent(0));
+  const auto product = [&](const ScalarField& left, const ScalarField& right) {
+    preconditioner.apply(right, z);
+    const auto l = host(left), r = host(z);
+    double sum = 0;
+    for (int i = 0; i < fluid.particles.count; ++i) sum += static_cast<double>(l(i)) * r(i);
+    return sum;
+  };
+  const double aa = product(a, a), scale = std::sqrt(aa * product(b, b));
+  CHECK(std::abs(product(a, b) - product(b, a)) <= 1e-6 * scale);
+  CHECK(std::abs(preconditioner.apply(a, z) - aa) <= 1e-6 * aa);
+}
+
+/// What has seen other fluids does to the last bit what a preconditioner does that has not.
+template <class P>
+void check_forgets(P& kept, const PressureSystem& system, const Fluid& fluid) {
+  kept.update(system);
+  P fresh;
+  fresh.update(system);
+  const ScalarField r = random_residual(fluid, 7), z("greenwater::test_kept", r.extent(0)),
+                    y("greenwater::test_fresh", r.extent(0));
+  kept.apply(r, z);
+  fresh.apply(r, y);
+  const auto of_kept = host(z), of_fresh = host(y);
+  for (int i = 0; i < fluid.particles.count; ++i) REQUIRE(of_kept(i) == of_fresh(i));
 }
 
 /// Listens to Kokkos: the labels of all launches and of all allocations while it lives. One at a time.
