@@ -9,6 +9,7 @@
 #include "core/check.hpp"
 #include "kernels/density.hpp"
 #include "kernels/packing.hpp"
+#include "kernels/sample.hpp"
 
 namespace greenwater {
 namespace {
@@ -144,7 +145,10 @@ Effects build_effects(const Scene& scene) {
   for (const ViscosityCase& c : scene.viscosity) effects.add(make_viscosity(static_cast<real>(c.kinematic)));
   for (const CollisionCase& c : scene.collision)
     effects.add(make_collision({static_cast<real>(c.distance), static_cast<real>(c.restitution), c.sweeps}));
-  if (auto motion = build_motion(scene)) effects.add(make_moving_walls(std::move(motion)));
+  if (auto motion = build_motion(scene)) {
+    if (scene.mps.scheme == "default") effects.add(make_wall_speeds(motion));
+    effects.add(make_moving_walls(std::move(motion)));
+  }
   for (const BodyForceCase& c : scene.body_force) {
     const auto force = std::make_shared<std::array<Formula, 3>>(
         compile(c.acceleration.text, c.acceleration.place, Variables::place_time_velocity));
@@ -157,19 +161,60 @@ Effects build_effects(const Scene& scene) {
   return effects;
 }
 
-std::unique_ptr<Scheme> build_scheme(const Scene& scene) {
+namespace {
+
+SolverOptions solver_options(const MpsCase& mps) {
+  SolverOptions options;
+  options.cg = {static_cast<real>(mps.pressure.tolerance), static_cast<real>(mps.pressure.absolute_tolerance),
+                mps.pressure.max_iterations};
+  const std::string& way = mps.pressure.preconditioner;
+  options.preconditioning = way == "multigrid" ? Preconditioning::multigrid
+                            : way == "jacobi"  ? Preconditioning::jacobi
+                                               : Preconditioning::none;
+  return options;
+}
+
+// The speed that gravity gives, or that the fluid has at the start, whichever is higher.
+double reference_speed(const Scene& scene, const Fluid& fluid) {
+  double g2 = 0;
+  for (const double g : scene.gravity) g2 += g * g;
+  const double g = std::sqrt(g2);
+  const auto x = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), fluid.particles.position);
+  double low = 0, high = 0;
+  for (int i = 0; i < fluid.particles.count && g > 0; ++i) {
+    double depth = 0;
+    for (int d = 0; d < scene.dimension; ++d) depth += scene.gravity[d] / g * x(i, d);
+    low = i == 0 ? depth : std::min(low, depth);
+    high = i == 0 ? depth : std::max(high, depth);
+  }
+  return std::max(std::sqrt(g * (high - low + fluid.spacing)), static_cast<double>(max_speed(fluid)));
+}
+
+std::unique_ptr<Scheme> build_default(const Scene& scene, const Fluid& fluid) {
+  const DefaultSchemeCase& standard = scene.mps.standard;
+  DefaultOptions options;
+  options.solver = solver_options(scene.mps);
+  options.reference_speed =
+      static_cast<real>(standard.reference_speed > 0 ? standard.reference_speed : reference_speed(scene, fluid));
+  options.drift = static_cast<real>(standard.drift);
+  options.shifting = static_cast<real>(standard.shifting);
+  options.smoothing.inside = static_cast<real>(standard.smoothing);
+  options.smoothing.at_surface = static_cast<real>(standard.surface_smoothing);
+  options.separation = static_cast<real>(standard.separation);
+  return make_default(options);
+}
+
+}  // namespace
+
+std::unique_ptr<Scheme> build_scheme(const Scene& scene, const Fluid& fluid) {
   const MpsCase& mps = scene.mps;
+  if (mps.scheme == "default") return build_default(scene, fluid);
   ClassicOptions options;
+  options.solver = solver_options(mps);
   options.pressure.diagonal_factor = static_cast<real>(mps.multiplication_coefficient);
   options.pressure.source_factor = static_cast<real>(mps.relaxation_factor);
   options.pressure.compressibility = static_cast<real>(mps.compressibility);
   options.pressure.source = mps.pressure.source == "density" ? PressureSource::density : PressureSource::divergence;
-  options.solver.cg = {static_cast<real>(mps.pressure.tolerance), static_cast<real>(mps.pressure.absolute_tolerance),
-                       mps.pressure.max_iterations};
-  const std::string& way = mps.pressure.preconditioner;
-  options.solver.preconditioning = way == "multigrid" ? Preconditioning::multigrid
-                                   : way == "jacobi"  ? Preconditioning::jacobi
-                                                      : Preconditioning::none;
   options.surface_ratio = static_cast<real>(mps.free_surface_ratio);
   return make_classic(options);
 }

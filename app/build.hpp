@@ -14,7 +14,7 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls);
 /// Just the effects that the scene names.
 Effects build_effects(const Scene& scene);
 
-std::unique_ptr<Scheme> build_scheme(const Scene& scene);
+std::unique_ptr<Scheme> build_scheme(const Scene& scene, const Fluid& fluid);
 
 /// Where the pressure probe reads: its point, or, of a point on a wall, the place just off that wall on the side that the
 /// probe faces; a box faces its inside by itself. Throws CaseError on any other wall when the case does not say.

@@ -114,8 +114,18 @@ struct PressureCase {
   std::string source = "density";  // density | divergence
 };
 
+struct DefaultSchemeCase {
+  double reference_speed = 0;    // [m/s]; 0: sqrt(|g| H) or the fastest start, whichever is more
+  double drift = 0.5;            // x reference speed
+  double shifting = 1;           // x that of Lind et al. (2012)
+  double smoothing = 0.2;        // rate x spacing / reference speed
+  double surface_smoothing = 0.6;
+  double separation = 0.6;       // x spacing
+};
+
 struct MpsCase {
   std::string scheme = "classic";
+  DefaultSchemeCase standard;
   double spacing = 0;  // l0 [m]
   Place spacing_place;
   std::int64_t expected_particles = 0;  // 0 = not checked

@@ -53,13 +53,23 @@ Words read_no_slip(Section& section, const Words& walls) {
 
 }  // namespace
 
+void read_default_scheme(Section section, DefaultSchemeCase& options) {
+  options.reference_speed = section.number("reference_speed", "m/s", at_least(0), options.reference_speed);
+  options.drift = section.number("drift", "-", at_least(0), options.drift);
+  options.shifting = section.number("shifting", "-", at_least(0), options.shifting);
+  options.smoothing = section.number("smoothing", "-", at_least(0), options.smoothing);
+  options.surface_smoothing = section.number("surface_smoothing", "-", at_least(0), options.surface_smoothing);
+  options.separation = section.number("separation", "x spacing", between(0, 1), options.separation);
+}
+
 void read_mps(Section mps, Scene& scene) {
   constexpr double least_radius = 1.1, most_radius = 10;  // x spacing: neighbours at all, and memory
   constexpr double usual_radius_3d = 2.1;                 // of the literature; some 40 neighbours, where 3.1 means 125
   MpsCase& options = scene.mps;
   if (scene.dimension == 3)
     options.radius_density = options.radius_gradient = options.radius_laplacian = usual_radius_3d;
-  options.scheme = mps.choice("scheme", {"classic"}, options.scheme);
+  options.scheme = mps.choice("scheme", {"default", "classic"}, options.scheme);
+  if (options.scheme == "default") options.kernel = "standard";
   options.spacing = mps.number("spacing", "m", positive, example(0.004));
   options.spacing_place = mps.place("spacing");
   options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);
@@ -80,6 +90,7 @@ void read_mps(Section mps, Scene& scene) {
   options.compressibility = mps.number("compressibility", "1/Pa", at_least(0), options.compressibility);
   options.free_surface_ratio = mps.number("free_surface_ratio", "-", between(0, 1), options.free_surface_ratio);
   read_pressure(mps.table("pressure"), options.pressure);
+  if (options.scheme == "default") read_default_scheme(mps.table("default"), options.standard);
 }
 
 void read_effects(Section effects, Scene& scene) {

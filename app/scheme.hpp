@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "kernels/acceleration.hpp"
 #include "kernels/effects/effect.hpp"
 #include "kernels/pressure_solver.hpp"
 
@@ -30,6 +31,18 @@ struct ClassicOptions {
 
 /// The semi-implicit MPS method as the paper uses it.
 std::unique_ptr<Scheme> make_classic(const ClassicOptions& options);
+
+struct DefaultOptions {
+  SolverOptions solver;
+  real reference_speed = 0;         // U of the flow [m/s]: that of its energy, not of a splash
+  real drift = real(0.5);           // speed with which density errors are undone, x U
+  real shifting = 1;                // how much particles are shifted, x what Lind et al. (2012) do at CFL 0.25
+  SmoothingOptions smoothing;       // its speed is set to U
+  real separation = real(0.6);      // particles closer than this, x spacing, and approaching are held apart; 0: not
+};
+
+/// The scheme for all that is not the paper's: calm at rest, with tension, and without a row cut off at the surface.
+std::unique_ptr<Scheme> make_default(const DefaultOptions& options);
 
 /// Sorts the particles into the grid and builds their rows; returns how many left the domain. Needed once before the
 /// first step, which starts from rows.

@@ -30,7 +30,7 @@ class Classic : public Scheme {
     effects.run(Stage::force, fluid, dt);
     effects.run(Stage::walls, fluid, dt);
     report.stopped = predict(fluid, dt);
-    effects.run(Stage::after_predict, fluid, dt);
+    effects.run(Stage::after_move, fluid, dt);
 
     // 2  who is near whom now, and n
     report.departed = settle_rows(fluid);

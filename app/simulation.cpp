@@ -42,7 +42,7 @@ Column vector_column(const std::string& name, const std::string& unit, const Fie
 
 std::string effects_text(const Effects& effects) {
   std::string text;
-  for (const Stage stage : {Stage::force, Stage::walls, Stage::after_predict}) {
+  for (const Stage stage : {Stage::force, Stage::walls, Stage::after_move}) {
     for (const auto& effect : effects.at(stage)) text += (text.empty() ? "" : ", ") + std::string(effect->name());
   }
   return text.empty() ? "none" : text;
@@ -54,7 +54,7 @@ Simulation::Simulation(const Scene& scene)
     : scene_(scene),
       fluid_(build_fluid(scene, build_walls(scene))),
       effects_(build_effects(scene)),
-      scheme_(build_scheme(scene)) {
+      scheme_(build_scheme(scene, fluid_)) {
   for (const ProbeCase& probe : scene_.probes) {
     const bool of_pressure = probe.kind == "wall_pressure";
     pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);

@@ -122,7 +122,7 @@ Water::Water(const Scene& scene, const std::optional<State>& state)
     : scene_(scene),
       fluid_(build_fluid(scene, build_walls(scene))),
       effects_(build_effects(scene)),
-      scheme_(build_scheme(scene)) {
+      scheme_(build_scheme(scene, fluid_)) {
   if (state) put(*state);
 }
 
@@ -188,7 +188,7 @@ Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state) 
   effects.run(Stage::force, fluid, dt);
   effects.run(Stage::walls, fluid, dt);
   predict(fluid, dt);
-  effects.run(Stage::after_predict, fluid, dt);
+  effects.run(Stage::after_move, fluid, dt);
   fluid.faces = build_walls(cut);
   make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), fluid.spacing);
   settle_rows(fluid);

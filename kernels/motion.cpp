@@ -13,19 +13,29 @@ void clear_acceleration_in(const VectorField& a, int count) {
       });
 }
 
-// Whether walls move while particles do (in correct() they are where they go already), and for how long [s].
+// From when to when walls move while particles do, as seen from where the panels stand [s]; both 0: they do not.
 struct Sweep {
-  bool with_walls;
-  coord dt;
+  coord begin, end;
+  KOKKOS_INLINE_FUNCTION bool with_walls() const { return begin != end; }
 };
 
-// Where the corners of a piece were at the start of the step.
+// Where the corners of a piece are at a time.
 template <int Dim>
-KOKKOS_INLINE_FUNCTION void corners_before(const Panel& w, const Piece& piece, coord dt, Vec<Dim, coord>* corner) {
+KOKKOS_INLINE_FUNCTION void corners_at(const Panel& w, const Piece& piece, coord time, Vec<Dim, coord>* corner) {
   for (int e = 0; e < Dim; ++e) {
     corner[e] = Sight<Dim>::as_vec(piece.corner[e]);
-    corner[e] = along(corner[e], -dt, w.velocity.at(difference(corner[e], Sight<Dim>::as_vec(w.point))));
+    corner[e] = along(corner[e], time, w.velocity.at(difference(corner[e], Sight<Dim>::as_vec(w.point))));
   }
+}
+
+// Distance of x from the panel as it stands after a time, with the sign of the side that x is on [m].
+template <int Dim>
+KOKKOS_INLINE_FUNCTION coord side_after(const Sight<Dim>& sight, const Panel& w, coord time, const Vec<Dim, coord>& x) {
+  const coord side = sight.side(w, x);
+  if (time == 0) return side;
+  const auto n = sight.as_vec(w.normal);
+  const auto foot = difference(along(x, -side, n), sight.as_vec(w.point));
+  return side - time * dot(w.velocity.at(foot), n);
 }
 
 // Distance of x from the plane of a piece [m], with the sign of the side that x is on.
@@ -60,19 +70,20 @@ KOKKOS_INLINE_FUNCTION bool between(const Vec<Dim, coord>* c, const Vec<Dim, coo
 // Does a particle on its way from x to x + dx meet a panel on its own way? `side` is then the side of the panel, as it
 // stands at the end, on which the particle has to end to keep its distance [m].
 template <int Dim>
-KOKKOS_INLINE_FUNCTION bool meets_moving(const Sight<Dim>& sight, const Panel& w, coord dt, const Vec<Dim, coord>& x,
+KOKKOS_INLINE_FUNCTION bool meets_moving(const Sight<Dim>& sight, const Panel& w, const Sweep& sweep,
+                                         const Vec<Dim, coord>& x,
                                          const Vec<Dim, coord>& dx, coord& side) {
   const auto end = along(x, coord(1), dx);
   for (int k = w.first_piece; k < w.last_piece; ++k) {
     Vec<Dim, coord> before[3], then[3];
-    corners_before(w, sight.piece[k], dt, before);
-    for (int e = 0; e < Dim; ++e) then[e] = Sight<Dim>::as_vec(sight.piece[k].corner[e]);
+    corners_at(w, sight.piece[k], sweep.begin, before);
+    corners_at(w, sight.piece[k], sweep.end, then);
     const coord from = side_of_piece(before, x), to = side_of_piece(then, end);
     if (from * to > 0 || from == to) continue;
     const coord s = from / (from - to);
     for (int e = 0; e < Dim; ++e) then[e] = along(before[e], s, difference(then[e], before[e]));
     if (!between(then, along(x, s, dx))) continue;
-    side = to * sight.side(w, end) < 0 ? -from : from;  // the piece may be turned against its panel
+    side = to * side_after(sight, w, sweep.end, end) < 0 ? -from : from;  // the piece may be turned against its panel
     return true;
   }
   return false;
@@ -90,15 +101,16 @@ KOKKOS_INLINE_FUNCTION bool stop_at_walls(const MirrorWalls& walls, const GridSh
     if (sight.reach[k] >= sight.panels) break;
     const Panel& w = sight.panel[sight.reach[k]];
     coord side = sight.side(w, x);
-    const bool moving = sweep.with_walls && w.moves;
-    if (!(moving ? meets_moving(sight, w, sweep.dt, x, dx, side) : sight.meets(w, x, along(x, coord(1), dx)))) continue;
+    const bool moving = sweep.with_walls() && w.moves;
+    if (!(moving ? meets_moving(sight, w, sweep, x, dx, side) : sight.meets(w, x, along(x, coord(1), dx)))) continue;
     const auto n = sight.as_vec(w.normal);
     const auto u_w = w.velocity.at(difference(x, sight.as_vec(w.point)));
     coord speed = 0;
     for (int d = 0; d < Dim; ++d) speed += (u[d] - u_w[d]) * n[d];
     for (int d = 0; d < Dim; ++d) u[d] -= static_cast<real>(speed * n[d]);
-    dx = along(dx, side - sight.side(w, along(x, coord(1), dx)), n);
-    if (moving) carried = along(Vec<Dim, coord>{}, side - sight.side(w, x), n);
+    const coord end = moving ? sweep.end : 0;
+    dx = along(dx, side - side_after(sight, w, end, along(x, coord(1), dx)), n);
+    if (moving) carried = along(Vec<Dim, coord>{}, side - side_after(sight, w, end, x), n);
     stopped = true;
   }
   // Past the end of one wall and into another: stay, or go with the wall.
@@ -125,7 +137,7 @@ int predict_in(Fluid& fluid, real dt) {
   const auto a = Read<VectorField>(fluid.particles.acceleration);
   const auto walls = fluid.walls;
   const real g[3] = {fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]};
-  const Sweep sweep{true, dt};
+  const Sweep sweep{-coord(dt), 0};
   int stops = 0;
   Kokkos::parallel_reduce(
       "greenwater::predict", Range(0, fluid.particles.count),
@@ -149,7 +161,7 @@ int correct_in(Fluid& fluid, real dt) {
   const auto u = fluid.particles.velocity;
   const auto a = Read<VectorField>(fluid.particles.acceleration);
   const auto walls = fluid.walls;
-  const Sweep sweep{false, 0};
+  const Sweep sweep{0, 0};
   int stops = 0;
   Kokkos::parallel_reduce(
       "greenwater::correct", Range(0, fluid.particles.count),
@@ -159,6 +171,47 @@ int correct_in(Fluid& fluid, real dt) {
         for (int d = 0; d < Dim; ++d) {
           ui[d] += dt * a(i, d);
           dx[d] = coord(dt) * dt * a(i, d);
+        }
+        sum += move(walls, grid, sweep, x, u, i, dx, ui);
+      },
+      stops);
+  return stops;
+}
+
+template <int Dim>
+void kick_in(const VectorField& u, const Read<VectorField>& a, real dt, int count) {
+  Kokkos::parallel_for(
+      "greenwater::kick", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        for (int d = 0; d < Dim; ++d) u(i, d) += dt * a(i, d);
+      });
+}
+
+template <int Dim>
+int advance_in(Fluid& fluid, const Survey& survey, bool shifts, real dt) {
+  const auto grid = fluid.grid.shape();
+  const auto x = fluid.particles.position;
+  const auto u = fluid.particles.velocity;
+  const auto a = Read<VectorField>(fluid.particles.acceleration);
+  const auto walls = fluid.walls;
+  const auto shift = Read<VectorField>(survey.shift), gradient = Read<VectorField>(survey.velocity_gradient);
+  const real g[3] = {fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]};
+  const Sweep sweep{0, dt};
+  int stops = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::advance", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i, int& sum) {
+        auto ui = load<Dim>(u, i);
+        Vec<Dim, coord> dx;
+        for (int d = 0; d < Dim; ++d) {
+          ui[d] += dt * (g[d] + a(i, d));
+          dx[d] = coord(dt) * ui[d];
+        }
+        if (shifts) {
+          const auto by = load<Dim>(shift, i);
+          for (int d = 0; d < Dim; ++d) {
+            dx[d] += by[d];
+            for (int e = 0; e < Dim; ++e) ui[d] += gradient(i, d * Dim + e) * by[e];
+          }
         }
         sum += move(walls, grid, sweep, x, u, i, dx, ui);
       },
@@ -206,6 +259,16 @@ void clear_acceleration(Fluid& fluid) {
 int predict(Fluid& fluid, real dt) {
   Region region("predict");
   return fluid.particles.dim == 2 ? predict_in<2>(fluid, dt) : predict_in<3>(fluid, dt);
+}
+
+void kick(Fluid& fluid, real dt) {
+  const Particles& p = fluid.particles;
+  p.dim == 2 ? kick_in<2>(p.velocity, p.acceleration, dt, p.count) : kick_in<3>(p.velocity, p.acceleration, dt, p.count);
+}
+
+int advance(Fluid& fluid, const Survey& survey, bool shifts, real dt) {
+  Region region("advance");
+  return fluid.particles.dim == 2 ? advance_in<2>(fluid, survey, shifts, dt) : advance_in<3>(fluid, survey, shifts, dt);
 }
 
 void clip_pressure(Fluid& fluid) {

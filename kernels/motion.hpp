@@ -1,7 +1,7 @@
 #pragma once
 // What moves particles.
 
-#include "kernels/fluid.hpp"
+#include "kernels/survey.hpp"
 
 namespace greenwater {
 
@@ -11,6 +11,14 @@ void clear_acceleration(Fluid& fluid);
 /// u* = u + dt (g + acceleration), x* = x + dt u*. A particle whose way crosses a wall, which may be moving
 /// too, is stopped there: it keeps its distance from the wall and takes its normal velocity. Returns how many were.
 int predict(Fluid& fluid, real dt);
+
+/// u* = u + dt acceleration, without gravity, which acts through the pressure's rows (kernels/survey.hpp).
+void kick(Fluid& fluid, real dt);
+
+/// u = u* + dt (g + acceleration), x += dt u + shift, and u is then taken from where the particle has been shifted to:
+/// u += grad u shift. Walls are where they are at the start of the step and go on during it; particles are stopped at
+/// them like in predict(). Returns how many were stopped.
+int advance(Fluid& fluid, const Survey& survey, bool shifts, real dt);
 
 /// p = max(p, 0): classic MPS knows no tension.
 void clip_pressure(Fluid& fluid);

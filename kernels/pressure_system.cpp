@@ -69,8 +69,9 @@ KOKKOS_INLINE_FUNCTION Pack store_product(const Read<FlagField>& fixed, real K, 
   return product;
 }
 
-accum apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p, const ScalarField& Ap) {
-  const auto fixed = Read<FlagField>(fluid.particles.surface);
+accum apply_kept(const Fluid& fluid, real K, const FlagField& held, const ScalarField& diagonal, const ScalarField& p,
+                 const ScalarField& Ap) {
+  const auto fixed = Read<FlagField>(held);
   const auto near = fluid.rows.near;
   const int count = fluid.particles.count;
   accum energy = 0;
@@ -92,11 +93,11 @@ accum apply_kept(const Fluid& fluid, real K, const ScalarField& diagonal, const 
 
 // The weights are rounded as those that are kept, so that both ways give the same operator.
 template <int Dim>
-accum apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagonal, const ScalarField& p,
-                          const ScalarField& Ap) {
+accum apply_recomputed_in(const Fluid& fluid, real K, const FlagField& held, const ScalarField& diagonal,
+                          const ScalarField& p, const ScalarField& Ap) {
   const auto near = around<Dim>(fluid);
   const auto w = fluid.laplacian.weight;
-  const auto fixed = Read<FlagField>(fluid.particles.surface);
+  const auto fixed = Read<FlagField>(held);
   const int count = fluid.particles.count;
   accum energy = 0;
   Kokkos::parallel_reduce(
@@ -121,6 +122,7 @@ accum apply_recomputed_in(const Fluid& fluid, real K, const ScalarField& diagona
 
 void PressureSystem::assemble(const Fluid& fluid, real dt) {
   fluid_ = &fluid;
+  fixed_ = fluid.particles.surface;
   if (rhs_.extent(0) < fluid.particles.id.extent(0)) {
     rhs_ = uncleared<ScalarField>("greenwater::pressure_rhs", fluid.particles.id.extent(0));
     diagonal_ = uncleared<ScalarField>("greenwater::pressure_diagonal", fluid.particles.id.extent(0));
@@ -133,6 +135,14 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
     flat ? divergence_source_in<2>(fluid, dt, rhs_) : divergence_source_in<3>(fluid, dt, rhs_);
 }
 
+void PressureSystem::assemble(const Fluid& fluid, const ScalarField& rhs, const ScalarField& diagonal,
+                              const FlagField& fixed) {
+  fluid_ = &fluid;
+  rhs_ = rhs;
+  diagonal_ = diagonal;
+  fixed_ = fixed;
+}
+
 void PressureSystem::raise_diagonal(real part) { raise(diagonal_, fixed(), part, count()); }
 
 real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
@@ -140,9 +150,9 @@ real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
 accum PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);
   const bool flat = fluid_->particles.dim == 2;
-  const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, K, diagonal_, p, Ap)
-                       : flat               ? apply_recomputed_in<2>(*fluid_, K, diagonal_, p, Ap)
-                                            : apply_recomputed_in<3>(*fluid_, K, diagonal_, p, Ap);
+  const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, K, fixed_, diagonal_, p, Ap)
+                       : flat               ? apply_recomputed_in<2>(*fluid_, K, fixed_, diagonal_, p, Ap)
+                                            : apply_recomputed_in<3>(*fluid_, K, fixed_, diagonal_, p, Ap);
   if (!added_ || !added_->any()) return energy;
   added_->add_product(fixed(), p, Ap);
   return blas::dot(p, Ap, count());

@@ -28,6 +28,9 @@ class PressureSystem {
   /// `fluid` must outlive every apply() until the next assemble().
   void assemble(const Fluid& fluid, real dt);
 
+  /// Takes right side, diagonal and rows to be left out (1) as somebody made them: fields like those of the particles.
+  void assemble(const Fluid& fluid, const ScalarField& rhs, const ScalarField& diagonal, const FlagField& fixed);
+
   /// Makes the diagonal larger by this part of itself: as if the fluid were more compressible.
   void raise_diagonal(real part);
 
@@ -40,7 +43,7 @@ class PressureSystem {
   int count() const { return fluid_ ? fluid_->particles.count : 0; }
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
   const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
-  const FlagField& fixed() const { return fluid_->particles.surface; }
+  const FlagField& fixed() const { return fixed_; }             // 1 where the row is left out, p = 0
   const Fluid& fluid() const { return *fluid_; }
   real factor() const;  // K [1/m^2]
   const AddedTerm* added() const { return added_; }
@@ -50,6 +53,7 @@ class PressureSystem {
   const Fluid* fluid_ = nullptr;
   const AddedTerm* added_ = nullptr;
   ScalarField rhs_, diagonal_;
+  FlagField fixed_;
 };
 
 }  // namespace greenwater

@@ -215,6 +215,18 @@ std::int64_t particle_count(const Fluid& fluid, const std::array<coord, 3>& low,
   return total;
 }
 
+real max_speed(const Fluid& fluid) {
+  real m = 0;
+  const auto u = Read<VectorField>(fluid.particles.velocity);
+  const int dim = fluid.particles.dim;
+  Kokkos::parallel_reduce("greenwater::max_speed", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i, real& most) {
+    real s = 0;
+    for (int d = 0; d < dim; ++d) s += u(i, d) * u(i, d);
+    most = larger(most, s);
+  }, Kokkos::Max<real>(m));
+  return std::sqrt(m);
+}
+
 FluidSums fluid_sums(const Fluid& fluid, const std::array<coord, 3>& reference) {
   return fluid.particles.dim == 2 ? fluid_sums_in<2>(fluid, reference) : fluid_sums_in<3>(fluid, reference);
 }

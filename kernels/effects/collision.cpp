@@ -184,7 +184,7 @@ class Collision : public Effect {
  public:
   explicit Collision(const CollisionOptions& options) : options_(options) {}
   std::string_view name() const override { return "collision"; }
-  Stage stage() const override { return Stage::after_predict; }
+  Stage stage() const override { return Stage::after_move; }
   void apply(Fluid& fluid, real dt) override {
     const Particles& p = fluid.particles;
     if (number_.extent(0) < p.id.extent(0)) {

@@ -14,11 +14,12 @@
 namespace greenwater {
 
 enum class Stage {
-  force,         // adds to the acceleration, at x and u of the step's start
-  walls,         // moves walls to where they are at the end of the step
-  after_predict  // changes x* and u*; the rows are those of the last build, distances those of now
+  wall_speeds,  // tells walls how they will go in this step
+  force,        // adds to the acceleration, at x and u of the step's start
+  walls,        // moves walls to where they are at the end of the step
+  after_move    // changes x and u once they have moved; the rows are those of the last build, distances those of now
 };
-constexpr std::size_t stages = 3;
+constexpr std::size_t stages = 4;
 
 /// One optional piece of physics. Its name is its case-file key, its kernel label and its row in the time table.
 class Effect {
@@ -76,5 +77,9 @@ using WallMotion = std::function<void(WallFaces& faces, double t)>;
 /// Moves walls: a corner's velocity is its mean over the step, (x(t + dt) - x(t)) / dt, so that it goes as far as the
 /// fluid sees it go; its acceleration is (x(t + dt) - 2 x(t) + x(t - dt)) / dt^2.
 std::unique_ptr<Effect> make_moving_walls(WallMotion motion);
+
+/// Before make_moving_walls() does so: gives the walls the velocities and accelerations of the step that comes, and
+/// leaves them where they are.
+std::unique_ptr<Effect> make_wall_speeds(WallMotion motion);
 
 }  // namespace greenwater

@@ -1,0 +1,78 @@
+#include "app/scheme.hpp"
+#include "core/region.hpp"
+#include "kernels/motion.hpp"
+#include "kernels/sample.hpp"
+
+namespace greenwater {
+namespace {
+
+class Default : public Scheme {
+ public:
+  explicit Default(const DefaultOptions& options)
+      : options_(options), pressure_({}), solver_(make_pressure_solver(options.solver)) {
+    options_.smoothing.speed = options.reference_speed;
+    if (options.separation > 0) separation_ = make_collision({options.separation, real(0.2), 5});
+  }
+
+  StepReport step(Fluid& fluid, Effects& effects, real dt) override {
+    StepReport report;
+
+    // 1  who is near whom, and what but pressure and gravity does
+    effects.run(Stage::wall_speeds, fluid, dt);
+    report.departed = settle_rows(fluid);
+    clear_acceleration(fluid);
+    effects.run(Stage::force, fluid, dt);
+    kick(fluid, dt);
+
+    // 2  the pressure that keeps the flow free of divergence
+    survey(fluid, surface_of(fluid), survey_options(fluid), dt, survey_);
+    report.solve = solve_pressure(fluid);
+
+    // 3  what the pressure does, and what is smoothed
+    accelerate(fluid, survey_, options_.smoothing, dt);
+
+    // 4  particles and walls go on
+    report.stopped = advance(fluid, survey_, options_.shifting > 0, dt);
+    effects.run(Stage::walls, fluid, dt);
+    if (separation_) keep_apart(fluid, dt);
+    effects.run(Stage::after_move, fluid, dt);
+    return report;
+  }
+
+ private:
+  const SurfaceTable& surface_of(const Fluid& fluid) {
+    if (table_.few == 0) table_ = make_surface_table(fluid.gradient.weight, fluid.particles.dim, fluid.spacing);
+    return table_;
+  }
+
+  SurveyOptions survey_options(const Fluid& fluid) const {
+    SurveyOptions options;
+    options.drift_speed = options_.drift * options_.reference_speed;
+    if (options_.shifting > 0) options.shift_speed = options_.shifting * max_speed(fluid);
+    return options;
+  }
+
+  SolveReport solve_pressure(Fluid& fluid) {
+    Region region("pressure");
+    pressure_.assemble(fluid, survey_.rhs, survey_.diagonal, survey_.fixed);
+    return solver_->solve(pressure_, fluid.particles.pressure);
+  }
+
+  void keep_apart(Fluid& fluid, real dt) {
+    Region region("separation");
+    separation_->apply(fluid, dt);
+  }
+
+  DefaultOptions options_;
+  PressureSystem pressure_;
+  std::unique_ptr<PressureSolver> solver_;
+  std::unique_ptr<Effect> separation_;
+  SurfaceTable table_{};
+  Survey survey_;
+};
+
+}  // namespace
+
+std::unique_ptr<Scheme> make_default(const DefaultOptions& options) { return std::make_unique<Default>(options); }
+
+}  // namespace greenwater

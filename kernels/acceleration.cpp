@@ -1,0 +1,94 @@
+#include "kernels/acceleration.hpp"
+
+#include "core/region.hpp"
+#include "kernels/small_matrix.hpp"
+
+namespace greenwater {
+namespace {
+
+// Rates of smoothing [1/s].
+struct Rates {
+  real inside, at_surface;
+};
+
+Rates rates_of(const SmoothingOptions& options, real l0, real dt) {
+  const real scale = options.speed / l0, most = options.most / dt;
+  return {smaller(options.inside * scale, most), smaller(options.at_surface * scale, most)};
+}
+
+// What pairs add to the smoothing of a pack of particles.
+template <int Dim>
+struct Smoother {
+  Read<VectorField> u, gradient;
+  Read<ScalarField> surface;
+  Rates rates;
+  Vec<Dim, Pack> ui, sum{};
+  Pack gradient_i[Dim * Dim], rate_i;
+
+  KOKKOS_INLINE_FUNCTION void start(int i) {
+    ui = load_pack<Dim>(u, i);
+    for (int k = 0; k < Dim * Dim; ++k) gradient_i[k] = load_lanes<Pack>(&gradient(i, k));
+    rate_i = rates.inside + rates.at_surface / 2 * load_pack(surface, i);
+  }
+
+  KOKKOS_INLINE_FUNCTION void add(const IndexPack& j, const Vec<Dim, Pack>& r, const Pack& weight) {
+    const Pack scale = weight * (rate_i + rates.at_surface / 2 * gather_pack(surface, j));
+    const auto uj = gather_pack<Dim>(u, j);
+    for (int d = 0; d < Dim; ++d) {
+      Pack slope{};
+      for (int e = 0; e < Dim; ++e)
+        slope += (gradient_i[d * Dim + e] + gather_lanes<Pack>(&gradient(0, d * Dim + e), j)) * r[e];
+      sum[d] += scale * (uj[d] - ui[d] - real(0.5) * slope);
+    }
+  }
+};
+
+template <int Dim>
+void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates, const VectorField& a) {
+  const auto w = fluid.gradient.weight;
+  const auto near = around_unmoved<Dim>(fluid, w);
+  const auto x = Read<CoordField>(fluid.particles.position);
+  const auto p = Read<ScalarField>(fluid.particles.pressure);
+  const auto drive = drive_of<Dim>(fluid);
+  const real rho = fluid.rho, per_n0 = 1 / fluid.gradient.reference.n0;
+  const real touching = static_cast<real>(1e-12 * fluid.spacing * fluid.spacing);
+  const auto correction = Read<VectorField>(survey.correction), surface_point = Read<VectorField>(survey.surface_point);
+  const bool smooths = rates.inside > 0 || rates.at_surface > 0;
+  const Smoother<Dim> idle{fluid.particles.velocity, survey.velocity_gradient, survey.surface, rates, {}, {}, {}, {}};
+  Kokkos::parallel_for(
+      "greenwater::accelerate", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
+        const int i = pack * pack_lanes;
+        const Pack pi = load_pack(p, i);
+        auto smoother = idle;
+        if (smooths) smoother.start(i);
+        Vec<Dim, Pack> sum{};
+        near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const Pack r2 = dot(r, r);
+          const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
+          const Pack slope = (gather_pack(p, j) - pi) * weight * inverse(larger(r2, all_lanes<Pack>(touching)));
+          sum = along(sum, slope, r);
+          if (smooths) smoother.add(j, r, weight);
+        });
+        near.for_each_image(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+          const Pack r2 = dot(r, r);
+          const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
+          const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, x, j);
+          sum = along(sum, (pj - pi) * weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
+        });
+        sum = along(sum, -pi, load_pack<Dim>(surface_point, i));
+        Symmetric<Dim, Pack> C;
+        for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) C.c[k] = load_lanes<Pack>(&correction(i, k));
+        store_pack(a, i, along(smoother.sum, all_lanes<Pack>(-1 / rho), product(C, sum)));
+      });
+}
+
+}  // namespace
+
+void accelerate(Fluid& fluid, const Survey& survey, const SmoothingOptions& smoothing, real dt) {
+  Region region("gradient");
+  const Rates rates = rates_of(smoothing, static_cast<real>(fluid.spacing), dt);
+  const VectorField a = fluid.particles.acceleration;
+  fluid.particles.dim == 2 ? accelerate_in<2>(fluid, survey, rates, a) : accelerate_in<3>(fluid, survey, rates, a);
+}
+
+}  // namespace greenwater

@@ -1,0 +1,252 @@
+#include "kernels/survey.hpp"
+
+#include <cmath>
+
+#include "core/region.hpp"
+#include "kernels/small_matrix.hpp"
+
+namespace greenwater {
+namespace {
+
+constexpr real poor = real(0.15), fair = real(0.35);  // of a stencil: 1 when round, 0 when particles are in a line
+constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the drift term answers to
+constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
+
+template <class V>
+KOKKOS_INLINE_FUNCTION V smooth_step(const V& x, real from, real to) {
+  const V t = smaller(larger((x - from) * (1 / (to - from)), V{}), all_lanes<V>(real(1)));
+  return t * t * (3 - 2 * t);
+}
+
+// How round a stencil is: (d^d det M) / (tr M)^d.
+template <int Dim, class V>
+KOKKOS_INLINE_FUNCTION V roundness(const V& det, const V& trace) {
+  V scale = trace * (real(1) / Dim), power = scale;
+  for (int d = 1; d < Dim; ++d) power = power * scale;
+  return det * inverse(larger(power, all_lanes<V>(real(1e-30))));
+}
+
+// M^-1 where the stencil is good, d I where it is poor, and between them.
+template <int Dim, class V>
+KOKKOS_INLINE_FUNCTION Symmetric<Dim, V> correction_of(const Symmetric<Dim, V>& M) {
+  auto C = adjugate(M);
+  const V det = determinant(M, C), good = smooth_step(roundness<Dim>(det, M.trace()), poor, fair);
+  const V scale = zero_unless(good > 0, good * inverse(select(good > 0, det, all_lanes<V>(real(1)))));
+  for (V& c : C.c) c = c * scale;
+  C.add_unit((1 - good) * Dim);
+  return C;
+}
+
+// Depth under a flat surface that lacks as much of n [l0].
+template <class V>
+KOKKOS_INLINE_FUNCTION V depth_of(const SurfaceTable& table, const V& m) {
+  const real m0 = table.missing[0], m1 = table.missing[1], m2 = table.missing[2];
+  const V upper = real(1.5) - (m - m1) * (1 / (m0 - m1)), lower = real(2.5) - (m - m2) * (1 / (m1 - m2));
+  const V depth = select(m > m1, upper, lower);
+  return smaller(larger(depth, all_lanes<V>(real(0.5))), all_lanes<V>(real(2.5)));
+}
+
+// The function that shifts: W = (1 - q)^4 (1 + 4 q), q = r / r_e, and W'/r times -1, with more of it for those that are
+// close, so that they do not pair: factor 1 + 0.2 (W / W(l0))^4.
+struct ShiftFunction {
+  real per_radius, per_spacing;  // 1 / r_e, 1 / W(l0)
+
+  KOKKOS_INLINE_FUNCTION static real value(real q) { return q < 1 ? (1 - q) * (1 - q) * (1 - q) * (1 - q) * (1 + 4 * q) : 0; }
+
+  template <class V>
+  KOKKOS_INLINE_FUNCTION V slope(const V& r) const {
+    const V q = r * per_radius, t = larger(1 - q, V{}), t3 = t * t * t;
+    V close = t * t3 * (1 + 4 * q) * per_spacing;
+    close *= close;
+    close *= close;
+    return 20 * t3 * per_radius * per_radius * (1 + real(0.2) * close);
+  }
+};
+
+template <int Dim>
+struct Sums {
+  Vec<Dim, Pack> S{}, crowd{};
+  Symmetric<Dim, Pack> M{};
+  Pack B[Dim][Dim]{};
+  Pack g_offset{};  // (1 / n^0) sum over images of w g . (x_img - x_j)
+};
+
+template <int Dim>
+struct Surveyor {
+  Around<Dim> near;
+  Read<CoordField> x;
+  Read<VectorField> u;
+  Read<ScalarField> n;
+  Read<AccumField> weight_sum;
+  Read<IndexField> neighbours, images;
+  FlagField marked;
+  Weight w;
+  ShiftFunction shift;
+  SurfaceTable table;
+  Survey out;
+  real n0, l0, touching, K, per_dt, drift, step, longest, g[3];
+  int count;
+
+  KOKKOS_INLINE_FUNCTION Sums<Dim> sums(int i) const {
+    Sums<Dim> sum;
+    const auto ui = load_pack<Dim>(u, i);
+    const real per_n0 = 1 / n0;
+    const auto add = [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+      const auto du = difference(image.velocity(gather_pack<Dim>(u, j)), ui);
+      const Pack r2 = dot(r, r);
+      const Pack weight = zero_unless(r2 > touching, image.weight(w, r2)) * per_n0;
+      const Pack per_r2 = weight * inverse(larger(r2, all_lanes<Pack>(touching)));
+      sum.S = along(sum.S, weight, r);
+      sum.M.add_square(per_r2, r);
+      for (int d = 0; d < Dim; ++d)
+        for (int e = 0; e < Dim; ++e) sum.B[d][e] += per_r2 * du[d] * r[e];
+      const Pack slope = zero_unless(weight > 0, shift.slope(sqrt(larger(r2, all_lanes<Pack>(touching)))) * image.share);
+      sum.crowd = along(sum.crowd, slope, r);
+      return weight;
+    };
+    near.for_each_neighbour(i, add);
+    near.for_each_image(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
+      const Pack weight = add(j, r, image);
+      const auto xi = load_pack<Dim>(x, i);
+      const auto way = convert_lanes_of<Pack>(difference(gather_pack<Dim>(x, j), xi));
+      for (int d = 0; d < Dim; ++d) sum.g_offset += zero_unless(weight > 0, weight * g[d] * (r[d] - way[d]));
+    });
+    return sum;
+  }
+
+  KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+    const Sums<Dim> sum = sums(i);
+    const Pack ni = load_pack(n, i), full = n0 * inverse(larger(ni, all_lanes<Pack>(real(1e-6) * n0)));
+    Pack seen = convert_lanes<Pack>(load_pack(neighbours, i));
+    if (images.extent(0) > 0) seen += convert_lanes<Pack>(load_pack(images, i));
+
+    // How far it is to the surface, and where
+    const Pack m = larger(1 - ni * (1 / n0), Pack{}), slope = sqrt(dot(sum.S, sum.S));
+    Pack s = smooth_step(slope * full * (1 / l0), table.none, table.full);
+    s = select(seen < static_cast<real>(table.few), all_lanes<Pack>(real(1)), s);
+    const Pack per_depth = inverse(depth_of(table, m) * l0);
+    const Pack tip = smooth_step(m, table.missing[0], table.missing[0] + thin) * m * (1 + table.bulge * m);
+    const Pack missing = s * larger(slope * per_depth, tip);
+    auto normal = sum.S;  // out of the fluid
+    for (int d = 0; d < Dim; ++d) normal[d] *= -inverse(larger(slope, all_lanes<Pack>(real(1e-6) * l0)));
+
+    // grad u; what is missing counts as if it were round, which keeps the divergence of the few from being overrated
+    auto M = sum.M;
+    M.add_unit(s * m * (real(1) / Dim));
+    const auto C = correction_of(M);
+    Pack grad[Dim][Dim]{}, div{};
+    for (int d = 0; d < Dim; ++d) {
+      for (int e = 0; e < Dim; ++e) {
+        for (int f = 0; f < Dim; ++f) grad[d][e] += sum.B[d][f] * C(f, e);
+        store_lanes(&out.velocity_gradient(i, d * Dim + e), grad[d][e]);
+      }
+      div += grad[d][d];
+    }
+
+    // The row
+    const auto held = seen < static_cast<real>(Dim + 1);
+    const Pack excess = larger(smaller(ni * (1 / n0) - 1, all_lanes<Pack>(largest_error)), all_lanes<Pack>(-largest_error));
+    const Pack error = s * larger(excess, Pack{}) + (1 - s) * excess;
+    Pack gravity = -sum.g_offset;
+    for (int d = 0; d < Dim; ++d) gravity += g[d] * (1 - s) * sum.S[d];
+    const Pack b = -per_dt * div + drift * error - K * n0 * gravity;
+    const Pack diagonal = K * (convert_lanes<Pack>(load_pack(weight_sum, i)) + n0 * missing);
+    store_lanes(&out.rhs(i), select(held, Pack{}, b));
+    store_lanes(&out.diagonal(i), select(held, all_lanes<Pack>(real(1)), diagonal));
+    store_lanes(&out.surface(i), s);
+    for (int l = 0; l < pack_lanes; ++l) {
+      out.fixed(i + l) = lane(seen, l) < Dim + 1;
+      marked(i + l) = lane(s, l) > real(0.5);
+    }
+
+    // The pressure's gradient, with the surface as one more neighbour
+    const Pack there = s * m;
+    M = sum.M;
+    M.add_square(there, normal);
+    auto C_p = correction_of(M);
+    for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
+    for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
+
+    if (step == 0) return;
+    auto shift = along(Vec<Dim, Pack>{}, all_lanes<Pack>(-step), sum.crowd);
+    shift = along(shift, -s * dot(shift, normal), normal);  // along the surface, not through it
+    const Pack length2 = dot(shift, shift), longest2 = all_lanes<Pack>(longest * longest);
+    Pack part = select(length2 > longest2, longest * inverse(sqrt(larger(length2, longest2))), all_lanes<Pack>(real(1)));
+    part = select(seen < static_cast<real>(table.few), Pack{}, part);
+    for (int d = 0; d < Dim; ++d) store_lanes(&out.shift(i, d), part * shift[d]);
+  }
+};
+
+template <int Dim>
+void survey_in(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& out) {
+  const Particles& p = fluid.particles;
+  const Weight& w = fluid.gradient.weight;
+  const Reference& lattice = fluid.gradient.reference;
+  const real l0 = static_cast<real>(fluid.spacing), rho = fluid.rho;
+  const ShiftFunction shift{1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius)};
+  const real half = w.radius / 2;
+  Surveyor<Dim> surveyor{around_unmoved<Dim>(fluid, w), p.position, p.velocity, p.number_density,
+                         fluid.rows.near.weight_sum, fluid.rows.near.number, fluid.rows.images.number,
+                         p.surface, w, shift, table, out, lattice.n0, l0, real(1e-12) * l0 * l0,
+                         2 * Dim / (lattice.lambda * lattice.n0), rho / dt,
+                         rho * (options.drift_speed / l0) * (options.drift_speed / l0),
+                         3 * half * options.shift_speed * dt / table.lattice_sum, options.shift_limit * l0,
+                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}, p.count};
+  Kokkos::parallel_for(
+      "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
+}
+
+void make_room(const Particles& p, Survey& out) {
+  const std::size_t room = p.id.extent(0);
+  if (out.rhs.extent(0) >= room) return;
+  out.rhs = uncleared<ScalarField>("greenwater::survey_rhs", room);
+  out.diagonal = uncleared<ScalarField>("greenwater::survey_diagonal", room);
+  out.fixed = uncleared<FlagField>("greenwater::survey_fixed", room);
+  out.surface = uncleared<ScalarField>("greenwater::survey_surface", room);
+  out.correction = uncleared<VectorField>("greenwater::survey_correction", room, p.dim * (p.dim + 1) / 2);
+  out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
+  out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
+  out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
+}
+
+}  // namespace
+
+SurfaceTable make_surface_table(const Weight& weight, int dim, coord spacing) {
+  const int reach = static_cast<int>(std::ceil(weight.radius / spacing));
+  const int across = dim == 3 ? reach : 0;
+  double n0 = 0, n[3] = {}, S[3] = {}, sum = 0;
+  int near = 0;
+  for (int ky = -reach; ky <= reach; ++ky)
+    for (int kx = -reach; kx <= reach; ++kx)
+      for (int kz = -across; kz <= across; ++kz) {
+        const double r = std::sqrt(static_cast<double>(kx * kx + ky * ky + kz * kz));
+        sum += ShiftFunction::value(static_cast<real>(r * spacing / weight.radius));
+        if (r == 0) continue;
+        const double w = weight(static_cast<real>(r * spacing));
+        near += w > 0;
+        n0 += w;
+        for (int row = 0; row < 3; ++row) {
+          if (ky > row) continue;
+          n[row] += w;
+          S[row] -= w * ky;
+        }
+      }
+  SurfaceTable table{};
+  for (int row = 0; row < 3; ++row) table.missing[row] = static_cast<real>(1 - n[row] / n0);
+  const double m = table.missing[0];
+  table.full = static_cast<real>(0.9 * S[1] / n[1]);
+  table.none = table.full / 2;
+  table.bulge = static_cast<real>((S[0] / n0 / 0.5 / m - 1) / m);
+  table.lattice_sum = static_cast<real>(sum);
+  table.few = near / 3;
+  return table;
+}
+
+void survey(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& found) {
+  Region region("survey");
+  make_room(fluid.particles, found);
+  fluid.particles.dim == 2 ? survey_in<2>(fluid, table, options, dt, found)
+                           : survey_in<3>(fluid, table, options, dt, found);
+}
+
+}  // namespace greenwater

@@ -1,0 +1,53 @@
+#pragma once
+// What the default scheme wants to know of a particle's neighbourhood, found in one pass over the rows: how the fluid
+// lies and moves there, and with that the row of its pressure.
+//
+//   S = (1 / n^0) sum w r_ij                         points into the fluid; 0 where particles lie evenly
+//   M = (1 / n^0) sum w r_ij r_ij^T / r_ij^2         I / d on the lattice
+//   B = (1 / n^0) sum w (u_j - u_i) r_ij^T / r_ij^2  grad u = B M^-1 (corrected gradient, Khayyer and Gotoh 2011)
+//
+// over neighbours and images.
+
+#include "kernels/fluid.hpp"
+
+namespace greenwater {
+
+struct SurveyOptions {
+  real drift_speed = 0;     // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
+  real shift_speed = 0;     // how fast particles mix [m/s]; 0 shifts nothing
+  real shift_limit = real(0.1);  // longest shift, x spacing
+};
+
+/// The surface as rows of a lattice under it see it; found once.
+struct SurfaceTable {
+  real missing[3];       // 1 - n / n^0 of the first, second and third row, l0/2, 3 l0/2 and 5 l0/2 deep
+  real none, full;       // |S| n^0 / (n l0) at which a particle begins to be at the surface, and is
+  real bulge;            // b: |S| / (depth) = m (1 + b m) in the first row
+  real lattice_sum;      // of the function whose gradient shifts particles, that of a particle itself included [-]
+  int few;               // neighbours of a particle of spray
+};
+SurfaceTable make_surface_table(const Weight& weight, int dim, coord spacing);
+
+/// What is known of every particle after a survey; fields like those of the particles.
+struct Survey {
+  ScalarField rhs, diagonal;      // of the pressure's row (kernels/pressure_system.hpp)
+  FlagField fixed;                // 1: in free flight, without a row
+  ScalarField surface;            // s: 1 at the surface, 0 inside
+  VectorField correction;         // (i, place) C of the pressure's gradient, a Symmetric
+  VectorField surface_point;      // v: the surface's part of the gradient is -p_i v [1/m]
+  VectorField velocity_gradient;  // (i, d Dim + e) du_d / dx_e [1/s]
+  VectorField shift;              // by which the particle is moved beside its own way [m]
+};
+
+/// Surveys all particles with u* in particles.velocity (without gravity) and makes the rows of the pressure:
+///
+///   K [sum w (p_j - p_i) - m_i p_i] = (rho / dt) div u* - rho (c_s / l0)^2 (n - n^0) / n^0 + K n^0 rho g . (S' - s S)
+///
+/// Gravity acts through the same sums as the pressure, not through div (dt g): so p = rho g depth solves the rows to
+/// the last digit, however particles lie. S' is S with an image taken where its particle is. Near the surface (s = 1)
+/// a point without pressure stands for what is missing, at the depth that n tells: m_i = n^0 |S| / depth makes a linear
+/// pressure exact (after the space potential particle, Tsuruta et al. 2015); no row is cut off at p = 0.
+/// particles.surface is marked where s > 1/2.
+void survey(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& found);
+
+}  // namespace greenwater
