@@ -25,14 +25,14 @@ class Default : public Scheme {
     kick(fluid, dt);
 
     // 2  the pressure that keeps the flow free of divergence
-    survey(fluid, surface_of(fluid), survey_options(fluid), dt, survey_);
+    survey(fluid, table_of(fluid), survey_options(fluid, dt), dt, survey_);
     report.solve = solve_pressure(fluid);
 
     // 3  what the pressure does, and what is smoothed
     accelerate(fluid, survey_, options_.smoothing, dt);
 
     // 4  particles and walls go on
-    report.stopped = advance(fluid, survey_, options_.shifting > 0, dt);
+    report.stopped = advance(fluid, survey_, dt);
     effects.run(Stage::walls, fluid, dt);
     if (separation_) keep_apart(fluid, dt);
     effects.run(Stage::after_move, fluid, dt);
@@ -40,15 +40,17 @@ class Default : public Scheme {
   }
 
  private:
-  const SurfaceTable& surface_of(const Fluid& fluid) {
-    if (table_.few == 0) table_ = make_surface_table(fluid.gradient.weight, fluid.particles.dim, fluid.spacing);
+  const LatticeTable& table_of(const Fluid& fluid) {
+    if (table_.few == 0) table_ = make_lattice_table(fluid.gradient.weight, fluid.particles.dim, fluid.spacing);
     return table_;
   }
 
-  SurveyOptions survey_options(const Fluid& fluid) const {
+  SurveyOptions survey_options(const Fluid& fluid, real dt) const {
     SurveyOptions options;
     options.drift_speed = options_.drift * options_.reference_speed;
-    if (options_.shifting > 0) options.shift_speed = options_.shifting * max_speed(fluid);
+    options.shifts = options_.shifting > 0;
+    const real way = max_speed(fluid) * dt / static_cast<real>(fluid.spacing);
+    if (options.shifts) options.shift_rate = smaller(options_.shifting * way, getenv("GW_MOST") ? real(atof(getenv("GW_MOST"))) : options_.most_shifting);
     return options;
   }
 
@@ -67,7 +69,7 @@ class Default : public Scheme {
   PressureSystem pressure_;
   std::unique_ptr<PressureSolver> solver_;
   std::unique_ptr<Effect> separation_;
-  SurfaceTable table_{};
+  LatticeTable table_{};
   Survey survey_;
 };
 

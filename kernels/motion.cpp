@@ -187,13 +187,14 @@ void kick_in(const VectorField& u, const Read<VectorField>& a, real dt, int coun
 }
 
 template <int Dim>
-int advance_in(Fluid& fluid, const Survey& survey, bool shifts, real dt) {
+int advance_in(Fluid& fluid, const Survey& survey, real dt) {
   const auto grid = fluid.grid.shape();
   const auto x = fluid.particles.position;
   const auto u = fluid.particles.velocity;
   const auto a = Read<VectorField>(fluid.particles.acceleration);
   const auto walls = fluid.walls;
   const auto shift = Read<VectorField>(survey.shift), gradient = Read<VectorField>(survey.velocity_gradient);
+  const bool shifts = shift.extent(0) > 0;
   const real g[3] = {fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]};
   const Sweep sweep{0, dt};
   int stops = 0;
@@ -266,9 +267,9 @@ void kick(Fluid& fluid, real dt) {
   p.dim == 2 ? kick_in<2>(p.velocity, p.acceleration, dt, p.count) : kick_in<3>(p.velocity, p.acceleration, dt, p.count);
 }
 
-int advance(Fluid& fluid, const Survey& survey, bool shifts, real dt) {
+int advance(Fluid& fluid, const Survey& survey, real dt) {
   Region region("advance");
-  return fluid.particles.dim == 2 ? advance_in<2>(fluid, survey, shifts, dt) : advance_in<3>(fluid, survey, shifts, dt);
+  return fluid.particles.dim == 2 ? advance_in<2>(fluid, survey, dt) : advance_in<3>(fluid, survey, dt);
 }
 
 void clip_pressure(Fluid& fluid) {

@@ -18,7 +18,7 @@ void kick(Fluid& fluid, real dt);
 /// u = u* + dt (g + acceleration), x += dt u + shift, and u is then taken from where the particle has been shifted to:
 /// u += grad u shift. Walls are where they are at the start of the step and go on during it; particles are stopped at
 /// them like in predict(). Returns how many were stopped.
-int advance(Fluid& fluid, const Survey& survey, bool shifts, real dt);
+int advance(Fluid& fluid, const Survey& survey, real dt);
 
 /// p = max(p, 0): classic MPS knows no tension.
 void clip_pressure(Fluid& fluid);

@@ -181,7 +181,7 @@ class ChunkBuilder {
     int candidates = 0;
     for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi,
                           [&](int first, int last) { candidates += last - first; });
-    bench_.make_room(candidates);
+    bench_.make_room(2 * candidates);  // each may be there twice: itself, and as an image
     auto sight = sight_from(search_.walls, search_.grid, xi);
     int room[RowSearch<Dim>::capacity];
     if (sight.begin != sight.end) sight.narrow(xi, search_.radius, room, RowSearch<Dim>::capacity);

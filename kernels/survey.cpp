@@ -1,5 +1,6 @@
 #include "kernels/survey.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/region.hpp"
@@ -10,6 +11,7 @@ namespace {
 
 constexpr real poor = real(0.15), fair = real(0.35);  // of a stencil: 1 when round, 0 when particles are in a line
 constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the drift term answers to
+constexpr real crowd_margin = real(0.05);                // of 1 - n / n^0: who is crowded may lack that much less
 constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
 
 template <class V>
@@ -39,11 +41,20 @@ KOKKOS_INLINE_FUNCTION Symmetric<Dim, V> correction_of(const Symmetric<Dim, V>& 
 
 // Depth under a flat surface that lacks as much of n [l0].
 template <class V>
-KOKKOS_INLINE_FUNCTION V depth_of(const SurfaceTable& table, const V& m) {
+KOKKOS_INLINE_FUNCTION V depth_of(const LatticeTable& table, const V& m) {
   const real m0 = table.missing[0], m1 = table.missing[1], m2 = table.missing[2];
   const V upper = real(1.5) - (m - m1) * (1 / (m0 - m1)), lower = real(2.5) - (m - m2) * (1 / (m1 - m2));
   const V depth = select(m > m1, upper, lower);
   return smaller(larger(depth, all_lanes<V>(real(0.5))), all_lanes<V>(real(2.5)));
+}
+
+// What a flat surface lacks of n where |S| n^0 / (n l0) is as large: tells of a surface also where particles are crowded.
+template <class V>
+KOKKOS_INLINE_FUNCTION V missing_of(const LatticeTable& table, const V& tilt) {
+  const real t0 = table.tilt[0], t1 = table.tilt[1], t2 = table.tilt[2];
+  const real m0 = table.missing[0], m1 = table.missing[1], m2 = table.missing[2];
+  const V upper = m1 + (tilt - t1) * ((m0 - m1) / (t0 - t1)), lower = m2 + (tilt - t2) * ((m1 - m2) / (t1 - t2));
+  return smaller(select(tilt > t1, upper, lower), all_lanes<V>(m0));
 }
 
 // The function that shifts: W = (1 - q)^4 (1 + 4 q), q = r / r_e, and W'/r times -1, with more of it for those that are
@@ -53,8 +64,13 @@ struct ShiftFunction {
 
   KOKKOS_INLINE_FUNCTION static real value(real q) { return q < 1 ? (1 - q) * (1 - q) * (1 - q) * (1 - q) * (1 + 4 * q) : 0; }
 
+  int kind = 0;
   template <class V>
   KOKKOS_INLINE_FUNCTION V slope(const V& r) const {
+    if (kind > 0) {
+      const V w = larger(1 / (r * per_radius) - 1, V{});
+      return (kind == 1 ? w : kind == 2 ? w * w : w * w * w) / r;
+    }
     const V q = r * per_radius, t = larger(1 - q, V{}), t3 = t * t * t;
     V close = t * t3 * (1 + 4 * q) * per_spacing;
     close *= close;
@@ -62,6 +78,49 @@ struct ShiftFunction {
     return 20 * t3 * per_radius * per_radius * (1 + real(0.2) * close);
   }
 };
+
+ShiftFunction shift_function(const Weight& w, real l0) { return {1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius), getenv("GW_SHIFT") ? atoi(getenv("GW_SHIFT")) : 0}; }
+
+// Of a symmetric matrix, by size; by powers of it.
+double largest_eigenvalue(const double (&A)[3][3]) {
+  double v[3] = {1, 0.7, 0.4}, length = 0;
+  for (int power = 0; power < 50; ++power) {
+    double next[3] = {};
+    for (int d = 0; d < 3; ++d)
+      for (int e = 0; e < 3; ++e) next[d] += A[d][e] * v[e];
+    length = std::hypot(next[0], next[1], next[2]);
+    if (length == 0) return 0;
+    for (int d = 0; d < 3; ++d) v[d] = next[d] / length;
+  }
+  return length;
+}
+
+// Largest eigenvalue of the gradient that shifts, for small waves of disorder on the lattice [1/m^2].
+double shift_stiffness(const Weight& weight, int dim, double l0) {
+  const ShiftFunction shift = shift_function(weight, static_cast<real>(l0));
+  const int reach = static_cast<int>(std::ceil(weight.radius / l0)), across = dim == 3 ? reach : 0;
+  constexpr int waves = 8;
+  constexpr double pi = 3.14159265358979323846;
+  double stiffest = 0;
+  for (int a = 0; a <= waves; ++a)
+    for (int b = 0; b <= a; ++b)
+      for (int c = 0; c <= (dim == 3 ? b : 0); ++c) {
+        double A[3][3] = {};
+        for (int kx = -reach; kx <= reach; ++kx)
+          for (int ky = -reach; ky <= reach; ++ky)
+            for (int kz = -across; kz <= across; ++kz) {
+              const double x[3] = {l0 * kx, l0 * ky, l0 * kz};
+              const double r = std::hypot(x[0], x[1], x[2]), step = 1e-4 * l0;
+              if (r == 0 || r >= weight.radius) continue;
+              const double slope = shift.slope(r), change = (shift.slope(r + step) - shift.slope(r - step)) / (2 * step);
+              const double wave = 1 - std::cos(pi / waves * (a * kx + b * ky + c * kz));
+              for (int d = 0; d < dim; ++d)
+                for (int e = 0; e < dim; ++e) A[d][e] += wave * ((d == e ? slope : 0) + change / r * x[d] * x[e]);
+            }
+        stiffest = std::max(stiffest, largest_eigenvalue(A));
+      }
+  return stiffest;
+}
 
 template <int Dim>
 struct Sums {
@@ -82,7 +141,7 @@ struct Surveyor {
   FlagField marked;
   Weight w;
   ShiftFunction shift;
-  SurfaceTable table;
+  LatticeTable table;
   Survey out;
   real n0, l0, touching, K, per_dt, drift, step, longest, g[3];
   int count;
@@ -121,8 +180,9 @@ struct Surveyor {
     if (images.extent(0) > 0) seen += convert_lanes<Pack>(load_pack(images, i));
 
     // How far it is to the surface, and where
-    const Pack m = larger(1 - ni * (1 / n0), Pack{}), slope = sqrt(dot(sum.S, sum.S));
-    Pack s = smooth_step(slope * full * (1 / l0), table.none, table.full);
+    const Pack slope = sqrt(dot(sum.S, sum.S)), tilt = slope * full * (1 / l0);
+    const Pack m = larger(1 - ni * (1 / n0), larger(missing_of(table, tilt) - crowd_margin, Pack{}));
+    Pack s = smooth_step(tilt, table.none, table.full);
     s = select(seen < static_cast<real>(table.few), all_lanes<Pack>(real(1)), s);
     const Pack per_depth = inverse(depth_of(table, m) * l0);
     const Pack tip = smooth_step(m, table.missing[0], table.missing[0] + thin) * m * (1 + table.bulge * m);
@@ -167,7 +227,7 @@ struct Surveyor {
     for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
     for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
 
-    if (step == 0) return;
+    if (out.shift.extent(0) == 0) return;
     auto shift = along(Vec<Dim, Pack>{}, all_lanes<Pack>(-step), sum.crowd);
     shift = along(shift, -s * dot(shift, normal), normal);  // along the surface, not through it
     const Pack length2 = dot(shift, shift), longest2 = all_lanes<Pack>(longest * longest);
@@ -178,25 +238,24 @@ struct Surveyor {
 };
 
 template <int Dim>
-void survey_in(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& out) {
+void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& out) {
   const Particles& p = fluid.particles;
   const Weight& w = fluid.gradient.weight;
   const Reference& lattice = fluid.gradient.reference;
   const real l0 = static_cast<real>(fluid.spacing), rho = fluid.rho;
-  const ShiftFunction shift{1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius)};
-  const real half = w.radius / 2;
+  const ShiftFunction shift = shift_function(w, l0);
   Surveyor<Dim> surveyor{around_unmoved<Dim>(fluid, w), p.position, p.velocity, p.number_density,
                          fluid.rows.near.weight_sum, fluid.rows.near.number, fluid.rows.images.number,
                          p.surface, w, shift, table, out, lattice.n0, l0, real(1e-12) * l0 * l0,
                          2 * Dim / (lattice.lambda * lattice.n0), rho / dt,
                          rho * (options.drift_speed / l0) * (options.drift_speed / l0),
-                         3 * half * options.shift_speed * dt / table.lattice_sum, options.shift_limit * l0,
+                         options.shift_rate * table.shift, options.shift_limit * l0,
                          {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}, p.count};
   Kokkos::parallel_for(
       "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
 }
 
-void make_room(const Particles& p, Survey& out) {
+void make_room(const Particles& p, bool shifts, Survey& out) {
   const std::size_t room = p.id.extent(0);
   if (out.rhs.extent(0) >= room) return;
   out.rhs = uncleared<ScalarField>("greenwater::survey_rhs", room);
@@ -206,21 +265,20 @@ void make_room(const Particles& p, Survey& out) {
   out.correction = uncleared<VectorField>("greenwater::survey_correction", room, p.dim * (p.dim + 1) / 2);
   out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
   out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
-  out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
+  if (shifts) out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
 }
 
 }  // namespace
 
-SurfaceTable make_surface_table(const Weight& weight, int dim, coord spacing) {
+LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing) {
   const int reach = static_cast<int>(std::ceil(weight.radius / spacing));
   const int across = dim == 3 ? reach : 0;
-  double n0 = 0, n[3] = {}, S[3] = {}, sum = 0;
+  double n0 = 0, n[3] = {}, S[3] = {};
   int near = 0;
   for (int ky = -reach; ky <= reach; ++ky)
     for (int kx = -reach; kx <= reach; ++kx)
       for (int kz = -across; kz <= across; ++kz) {
         const double r = std::sqrt(static_cast<double>(kx * kx + ky * ky + kz * kz));
-        sum += ShiftFunction::value(static_cast<real>(r * spacing / weight.radius));
         if (r == 0) continue;
         const double w = weight(static_cast<real>(r * spacing));
         near += w > 0;
@@ -231,20 +289,23 @@ SurfaceTable make_surface_table(const Weight& weight, int dim, coord spacing) {
           S[row] -= w * ky;
         }
       }
-  SurfaceTable table{};
-  for (int row = 0; row < 3; ++row) table.missing[row] = static_cast<real>(1 - n[row] / n0);
+  LatticeTable table{};
+  for (int row = 0; row < 3; ++row) {
+    table.missing[row] = static_cast<real>(1 - n[row] / n0);
+    table.tilt[row] = static_cast<real>(S[row] / n[row]);
+  }
   const double m = table.missing[0];
   table.full = static_cast<real>(0.9 * S[1] / n[1]);
   table.none = table.full / 2;
   table.bulge = static_cast<real>((S[0] / n0 / 0.5 / m - 1) / m);
-  table.lattice_sum = static_cast<real>(sum);
+  table.shift = static_cast<real>(1 / shift_stiffness(weight, dim, spacing));
   table.few = near / 3;
   return table;
 }
 
-void survey(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& found) {
+void survey(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& found) {
   Region region("survey");
-  make_room(fluid.particles, found);
+  make_room(fluid.particles, options.shifts, found);
   fluid.particles.dim == 2 ? survey_in<2>(fluid, table, options, dt, found)
                            : survey_in<3>(fluid, table, options, dt, found);
 }

@@ -14,19 +14,22 @@ namespace greenwater {
 
 struct SurveyOptions {
   real drift_speed = 0;     // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
-  real shift_speed = 0;     // how fast particles mix [m/s]; 0 shifts nothing
+  bool shifts = true;            // whether particles are shifted at all
+  real shift_rate = 0;           // part of the stiffest disorder that is undone in this step; above 2 it would grow [-]
   real shift_limit = real(0.1);  // longest shift, x spacing
 };
 
-/// The surface as rows of a lattice under it see it; found once.
-struct SurfaceTable {
-  real missing[3];       // 1 - n / n^0 of the first, second and third row, l0/2, 3 l0/2 and 5 l0/2 deep
+/// What the lattice tells; found once.
+struct LatticeTable {
+  real missing[3];       // 1 - n / n^0 of the first three rows under a flat surface, l0/2, 3 l0/2 and 5 l0/2 deep
+  real tilt[3];          // |S| n^0 / (n l0) of the same rows
   real none, full;       // |S| n^0 / (n l0) at which a particle begins to be at the surface, and is
   real bulge;            // b: |S| / (depth) = m (1 + b m) in the first row
-  real lattice_sum;      // of the function whose gradient shifts particles, that of a particle itself included [-]
+  real shift;            // way per gradient of the shift function that undoes the stiffest disorder [m^2]
   int few;               // neighbours of a particle of spray
 };
-SurfaceTable make_surface_table(const Weight& weight, int dim, coord spacing);
+/// Throws CaseError when the radius is less than 2 l0.
+LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
 
 /// What is known of every particle after a survey; fields like those of the particles.
 struct Survey {
@@ -36,7 +39,7 @@ struct Survey {
   VectorField correction;         // (i, place) C of the pressure's gradient, a Symmetric
   VectorField surface_point;      // v: the surface's part of the gradient is -p_i v [1/m]
   VectorField velocity_gradient;  // (i, d Dim + e) du_d / dx_e [1/s]
-  VectorField shift;              // by which the particle is moved beside its own way [m]
+  VectorField shift;              // by which the particle is moved beside its own way [m]; empty when nothing shifts
 };
 
 /// Surveys all particles with u* in particles.velocity (without gravity) and makes the rows of the pressure:
@@ -48,6 +51,6 @@ struct Survey {
 /// a point without pressure stands for what is missing, at the depth that n tells: m_i = n^0 |S| / depth makes a linear
 /// pressure exact (after the space potential particle, Tsuruta et al. 2015); no row is cut off at p = 0.
 /// particles.surface is marked where s > 1/2.
-void survey(const Fluid& fluid, const SurfaceTable& table, const SurveyOptions& options, real dt, Survey& found);
+void survey(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& found);
 
 }  // namespace greenwater
