@@ -50,7 +50,7 @@ class Default : public Scheme {
     options.drift_speed = options_.drift * options_.reference_speed;
     options.shifts = options_.shifting > 0;
     const real way = max_speed(fluid) * dt / static_cast<real>(fluid.spacing);
-    if (options.shifts) options.shift_rate = smaller(options_.shifting * way, getenv("GW_MOST") ? real(atof(getenv("GW_MOST"))) : options_.most_shifting);
+    if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
     return options;
   }
 

@@ -8,10 +8,10 @@ namespace greenwater {
 /// Smoothing of velocities, as rates: that part of a difference between neighbours that goes per second is the
 /// coefficient times speed / l0.
 struct SmoothingOptions {
-  real speed = 0;                   // of the flow [m/s]; 0 smooths nothing
-  real inside = real(0.2);          // coefficient [-]
-  real at_surface = real(0.6);      // added to it at the surface, where the geometry of the few makes noise [-]
-  real most = real(0.2);            // of a difference, in one step [-]
+  real speed = 0;               // of the flow [m/s]; 0 smooths nothing
+  real inside = real(0.2);      // coefficient [-]
+  real at_surface = real(0.6);  // added to it at the surface, where the geometry of the few makes noise [-]
+  real most = real(0.2);        // of a difference, in one step [-]
 };
 
 /// acceleration = -grad p / rho + smoothing.

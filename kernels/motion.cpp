@@ -71,8 +71,7 @@ KOKKOS_INLINE_FUNCTION bool between(const Vec<Dim, coord>* c, const Vec<Dim, coo
 // stands at the end, on which the particle has to end to keep its distance [m].
 template <int Dim>
 KOKKOS_INLINE_FUNCTION bool meets_moving(const Sight<Dim>& sight, const Panel& w, const Sweep& sweep,
-                                         const Vec<Dim, coord>& x,
-                                         const Vec<Dim, coord>& dx, coord& side) {
+                                         const Vec<Dim, coord>& x, const Vec<Dim, coord>& dx, coord& side) {
   const auto end = along(x, coord(1), dx);
   for (int k = w.first_piece; k < w.last_piece; ++k) {
     Vec<Dim, coord> before[3], then[3];
@@ -264,7 +263,8 @@ int predict(Fluid& fluid, real dt) {
 
 void kick(Fluid& fluid, real dt) {
   const Particles& p = fluid.particles;
-  p.dim == 2 ? kick_in<2>(p.velocity, p.acceleration, dt, p.count) : kick_in<3>(p.velocity, p.acceleration, dt, p.count);
+  p.dim == 2 ? kick_in<2>(p.velocity, p.acceleration, dt, p.count)
+             : kick_in<3>(p.velocity, p.acceleration, dt, p.count);
 }
 
 int advance(Fluid& fluid, const Survey& survey, real dt) {

@@ -43,7 +43,7 @@ class PressureSystem {
   int count() const { return fluid_ ? fluid_->particles.count : 0; }
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
   const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
-  const FlagField& fixed() const { return fixed_; }             // 1 where the row is left out, p = 0
+  const FlagField& fixed() const { return fixed_; }          // 1 where the row is left out, p = 0
   const Fluid& fluid() const { return *fluid_; }
   real factor() const;  // K [1/m^2]
   const AddedTerm* added() const { return added_; }

@@ -219,11 +219,14 @@ real max_speed(const Fluid& fluid) {
   real m = 0;
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const int dim = fluid.particles.dim;
-  Kokkos::parallel_reduce("greenwater::max_speed", Range(0, fluid.particles.count), KOKKOS_LAMBDA(const int i, real& most) {
-    real s = 0;
-    for (int d = 0; d < dim; ++d) s += u(i, d) * u(i, d);
-    most = larger(most, s);
-  }, Kokkos::Max<real>(m));
+  Kokkos::parallel_reduce(
+      "greenwater::max_speed", Range(0, fluid.particles.count),
+      KOKKOS_LAMBDA(const int i, real& most) {
+        real s = 0;
+        for (int d = 0; d < dim; ++d) s += u(i, d) * u(i, d);
+        most = larger(most, s);
+      },
+      Kokkos::Max<real>(m));
   return std::sqrt(m);
 }
 

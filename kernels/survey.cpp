@@ -11,7 +11,7 @@ namespace {
 
 constexpr real poor = real(0.15), fair = real(0.35);  // of a stencil: 1 when round, 0 when particles are in a line
 constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the drift term answers to
-constexpr real crowd_margin = real(0.05);                // of 1 - n / n^0: who is crowded may lack that much less
+constexpr real crowd_margin = real(0.05);             // of 1 - n / n^0: who is crowded may lack that much less
 constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
 
 template <class V>
@@ -62,15 +62,12 @@ KOKKOS_INLINE_FUNCTION V missing_of(const LatticeTable& table, const V& tilt) {
 struct ShiftFunction {
   real per_radius, per_spacing;  // 1 / r_e, 1 / W(l0)
 
-  KOKKOS_INLINE_FUNCTION static real value(real q) { return q < 1 ? (1 - q) * (1 - q) * (1 - q) * (1 - q) * (1 + 4 * q) : 0; }
+  KOKKOS_INLINE_FUNCTION static real value(real q) {
+    return q < 1 ? (1 - q) * (1 - q) * (1 - q) * (1 - q) * (1 + 4 * q) : 0;
+  }
 
-  int kind = 0;
   template <class V>
   KOKKOS_INLINE_FUNCTION V slope(const V& r) const {
-    if (kind > 0) {
-      const V w = larger(1 / (r * per_radius) - 1, V{});
-      return (kind == 1 ? w : kind == 2 ? w * w : w * w * w) / r;
-    }
     const V q = r * per_radius, t = larger(1 - q, V{}), t3 = t * t * t;
     V close = t * t3 * (1 + 4 * q) * per_spacing;
     close *= close;
@@ -79,7 +76,9 @@ struct ShiftFunction {
   }
 };
 
-ShiftFunction shift_function(const Weight& w, real l0) { return {1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius), getenv("GW_SHIFT") ? atoi(getenv("GW_SHIFT")) : 0}; }
+ShiftFunction shift_function(const Weight& w, real l0) {
+  return {1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius)};
+}
 
 // Of a symmetric matrix, by size; by powers of it.
 double largest_eigenvalue(const double (&A)[3][3]) {
@@ -112,7 +111,8 @@ double shift_stiffness(const Weight& weight, int dim, double l0) {
               const double x[3] = {l0 * kx, l0 * ky, l0 * kz};
               const double r = std::hypot(x[0], x[1], x[2]), step = 1e-4 * l0;
               if (r == 0 || r >= weight.radius) continue;
-              const double slope = shift.slope(r), change = (shift.slope(r + step) - shift.slope(r - step)) / (2 * step);
+              const double slope = shift.slope(r),
+                           change = (shift.slope(r + step) - shift.slope(r - step)) / (2 * step);
               const double wave = 1 - std::cos(pi / waves * (a * kx + b * ky + c * kz));
               for (int d = 0; d < dim; ++d)
                 for (int e = 0; e < dim; ++e) A[d][e] += wave * ((d == e ? slope : 0) + change / r * x[d] * x[e]);
@@ -159,7 +159,8 @@ struct Surveyor {
       sum.M.add_square(per_r2, r);
       for (int d = 0; d < Dim; ++d)
         for (int e = 0; e < Dim; ++e) sum.B[d][e] += per_r2 * du[d] * r[e];
-      const Pack slope = zero_unless(weight > 0, shift.slope(sqrt(larger(r2, all_lanes<Pack>(touching)))) * image.share);
+      const Pack slope =
+          zero_unless(weight > 0, shift.slope(sqrt(larger(r2, all_lanes<Pack>(touching)))) * image.share);
       sum.crowd = along(sum.crowd, slope, r);
       return weight;
     };
@@ -205,7 +206,8 @@ struct Surveyor {
 
     // The row
     const auto held = seen < static_cast<real>(Dim + 1);
-    const Pack excess = larger(smaller(ni * (1 / n0) - 1, all_lanes<Pack>(largest_error)), all_lanes<Pack>(-largest_error));
+    const Pack excess =
+        larger(smaller(ni * (1 / n0) - 1, all_lanes<Pack>(largest_error)), all_lanes<Pack>(-largest_error));
     const Pack error = s * larger(excess, Pack{}) + (1 - s) * excess;
     Pack gravity = -sum.g_offset;
     for (int d = 0; d < Dim; ++d) gravity += g[d] * (1 - s) * sum.S[d];
@@ -224,14 +226,16 @@ struct Surveyor {
     M = sum.M;
     M.add_square(there, normal);
     auto C_p = correction_of(M);
-    for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
+    for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k)
+      store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
     for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
 
     if (out.shift.extent(0) == 0) return;
     auto shift = along(Vec<Dim, Pack>{}, all_lanes<Pack>(-step), sum.crowd);
     shift = along(shift, -s * dot(shift, normal), normal);  // along the surface, not through it
     const Pack length2 = dot(shift, shift), longest2 = all_lanes<Pack>(longest * longest);
-    Pack part = select(length2 > longest2, longest * inverse(sqrt(larger(length2, longest2))), all_lanes<Pack>(real(1)));
+    Pack part =
+        select(length2 > longest2, longest * inverse(sqrt(larger(length2, longest2))), all_lanes<Pack>(real(1)));
     part = select(seen < static_cast<real>(table.few), Pack{}, part);
     for (int d = 0; d < Dim; ++d) store_lanes(&out.shift(i, d), part * shift[d]);
   }
@@ -244,13 +248,28 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
   const Reference& lattice = fluid.gradient.reference;
   const real l0 = static_cast<real>(fluid.spacing), rho = fluid.rho;
   const ShiftFunction shift = shift_function(w, l0);
-  Surveyor<Dim> surveyor{around_unmoved<Dim>(fluid, w), p.position, p.velocity, p.number_density,
-                         fluid.rows.near.weight_sum, fluid.rows.near.number, fluid.rows.images.number,
-                         p.surface, w, shift, table, out, lattice.n0, l0, real(1e-12) * l0 * l0,
-                         2 * Dim / (lattice.lambda * lattice.n0), rho / dt,
+  Surveyor<Dim> surveyor{around_unmoved<Dim>(fluid, w),
+                         p.position,
+                         p.velocity,
+                         p.number_density,
+                         fluid.rows.near.weight_sum,
+                         fluid.rows.near.number,
+                         fluid.rows.images.number,
+                         p.surface,
+                         w,
+                         shift,
+                         table,
+                         out,
+                         lattice.n0,
+                         l0,
+                         real(1e-12) * l0 * l0,
+                         2 * Dim / (lattice.lambda * lattice.n0),
+                         rho / dt,
                          rho * (options.drift_speed / l0) * (options.drift_speed / l0),
-                         options.shift_rate * table.shift, options.shift_limit * l0,
-                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}, p.count};
+                         options.shift_rate * table.shift,
+                         options.shift_limit * l0,
+                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]},
+                         p.count};
   Kokkos::parallel_for(
       "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
 }
@@ -295,7 +314,7 @@ LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing) {
     table.tilt[row] = static_cast<real>(S[row] / n[row]);
   }
   const double m = table.missing[0];
-  table.full = static_cast<real>(0.9 * S[1] / n[1]);
+  table.full = table.tilt[0] / 4;
   table.none = table.full / 2;
   table.bulge = static_cast<real>((S[0] / n0 / 0.5 / m - 1) / m);
   table.shift = static_cast<real>(1 / shift_stiffness(weight, dim, spacing));

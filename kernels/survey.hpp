@@ -13,7 +13,7 @@
 namespace greenwater {
 
 struct SurveyOptions {
-  real drift_speed = 0;     // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
+  real drift_speed = 0;          // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
   bool shifts = true;            // whether particles are shifted at all
   real shift_rate = 0;           // part of the stiffest disorder that is undone in this step; above 2 it would grow [-]
   real shift_limit = real(0.1);  // longest shift, x spacing
@@ -21,12 +21,12 @@ struct SurveyOptions {
 
 /// What the lattice tells; found once.
 struct LatticeTable {
-  real missing[3];       // 1 - n / n^0 of the first three rows under a flat surface, l0/2, 3 l0/2 and 5 l0/2 deep
-  real tilt[3];          // |S| n^0 / (n l0) of the same rows
-  real none, full;       // |S| n^0 / (n l0) at which a particle begins to be at the surface, and is
-  real bulge;            // b: |S| / (depth) = m (1 + b m) in the first row
-  real shift;            // way per gradient of the shift function that undoes the stiffest disorder [m^2]
-  int few;               // neighbours of a particle of spray
+  real missing[3];  // 1 - n / n^0 of the first three rows under a flat surface, l0/2, 3 l0/2 and 5 l0/2 deep
+  real tilt[3];     // |S| n^0 / (n l0) of the same rows
+  real none, full;  // |S| n^0 / (n l0) at which a particle begins to be at the surface, and is
+  real bulge;       // b: |S| / (depth) = m (1 + b m) in the first row
+  real shift;       // way per gradient of the shift function that undoes the stiffest disorder [m^2]
+  int few;          // neighbours of a particle of spray
 };
 /// Throws CaseError when the radius is less than 2 l0.
 LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
