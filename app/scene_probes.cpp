@@ -22,6 +22,10 @@ void read_kind(Section& section, const Scene& scene, ProbeCase& probe) {
     probe.point = section.vector("point", "m", scene.dimension, example(Point{0.6, 0.01, 0.01}));
     probe.facing = section.vector("facing", "-", scene.dimension, Point{0, 0, 0});
   }
+  if (probe.kind == "wall_pressure" || probe.kind == "wall_force") {
+    const std::string usual = scene.mps.scheme == "classic" ? "average" : "neumann";
+    probe.reading = section.choice("reading", {"neumann", "average"}, usual);
+  }
   const bool boxed = section.has("min") || section.has("max");
   if (probe.kind == "particle_count" && boxed) {
     const Corners corners = read_corners(section, scene.dimension, {{0, 0, 0}, {0.1, 0.1, 0.1}});

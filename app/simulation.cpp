@@ -17,6 +17,10 @@ int body_of(const WallFaces& walls, const std::string& name) {
   return static_cast<int>(found - walls.bodies.begin());
 }
 
+Reading reading_of(const ProbeCase& probe) {
+  return probe.reading == "average" ? Reading::average : Reading::neumann;
+}
+
 // "The lowest number there is" of a maximum over nothing.
 double or_nothing(double value) { return value < -1e300 ? std::numeric_limits<double>::quiet_NaN() : value; }
 
@@ -136,11 +140,11 @@ double Simulation::sample(std::size_t index) {
   if (probe.kind == "wall_pressure") {
     const Point& start = pressure_points_[index];
     const Point now = probe_motions_[index] ? probe_motions_[index]->at(start, time()) : start;
-    return sampler_.pressure(fluid_, {now}).front();
+    return sampler_.pressure(fluid_, {now}, reading_of(probe)).front();
   }
   if (probe.kind == "wall_force") {
     const auto patches = wall_patches(fluid_.faces, body_of(fluid_.faces, probe.wall), fluid_.spacing);
-    return wall_force(sampler_, fluid_, patches)[probe.component.front() - 'x'];
+    return wall_force(sampler_, fluid_, patches, reading_of(probe))[probe.component.front() - 'x'];
   }
   expect(probe.kind == "particle_count");
   if (probe.min == probe.max) return static_cast<double>(fluid_.particles.count);

@@ -57,11 +57,18 @@ struct Drive {
   Read<VectorField> extra;
   bool has_extra;
 
+  /// The part along a direction, of particle j.
+  KOKKOS_INLINE_FUNCTION coord along(const Vec<Dim, coord>& direction, int j) const {
+    coord sum = 0;
+    for (int d = 0; d < Dim; ++d) sum += direction[d] * (gravity[d] + (has_extra ? extra(j, d) : real(0)));
+    return sum;
+  }
+
   /// Of particles j.
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> at(const IndexPack& j) const {
     Vec<Dim, Pack> g;
     for (int d = 0; d < Dim; ++d) g[d] = all_lanes<Pack>(gravity[d]);
-    if (has_extra) g = along(g, all_lanes<Pack>(real(1)), gather_pack<Dim>(extra, j));
+    if (has_extra) g = greenwater::along(g, all_lanes<Pack>(real(1)), gather_pack<Dim>(extra, j));
     return g;
   }
 };

@@ -8,31 +8,6 @@ namespace greenwater {
 namespace {
 
 template <int Dim>
-void sample_pressure_in(const Fluid& fluid, const CoordField& point, const ScalarField& value, int count) {
-  const auto x = Read<CoordField>(fluid.particles.position);
-  const auto p = Read<ScalarField>(fluid.particles.pressure);
-  const auto first = Read<IndexField>(fluid.grid.first());
-  const auto grid = fluid.grid.shape();
-  const auto walls = fluid.walls;
-  const auto w = fluid.gradient.weight;
-  Kokkos::parallel_for(
-      "greenwater::sample_pressure", Range(0, count), KOKKOS_LAMBDA(const int i) {
-        const auto q = load<Dim>(point, i);
-        const auto sight = sight_from(walls, grid, q);
-        accum sum_w = 0, sum_wp = 0;
-        for_each_candidate<Dim>(grid, first, q, [&](const int j) {
-          const auto xj = load<Dim>(x, j);
-          const auto r = difference(xj, q);
-          const real weight = w(static_cast<real>(sqrt(dot(r, r))));
-          if (!(weight > 0) || !sight.sees(q, xj)) return;
-          sum_w += weight;
-          sum_wp += weight * p(j);
-        });
-        value(i) = sum_w > 0 ? static_cast<real>(sum_wp / sum_w) : real(0);
-      });
-}
-
-template <int Dim>
 coord wave_front_in(const Fluid& fluid) {
   const auto x = Read<CoordField>(fluid.particles.position);
   const auto neighbours = Read<IndexField>(fluid.rows.near.number);
@@ -87,24 +62,6 @@ FluidSums fluid_sums_in(const Fluid& fluid, const std::array<coord, 3>& referenc
 }
 
 }  // namespace
-
-std::vector<double> PointSampler::pressure(const Fluid& fluid, const std::vector<std::array<coord, 3>>& points) {
-  const int count = static_cast<int>(points.size()), dim = fluid.particles.dim;
-  if (static_cast<int>(point_.extent(0)) < count) {
-    point_ = CoordField("greenwater::sample_point", count, dim);
-    value_ = ScalarField("greenwater::sample_value", count);
-    point_host_ = Kokkos::create_mirror(point_);
-    value_host_ = Kokkos::create_mirror(value_);
-  }
-  for (int i = 0; i < count; ++i)
-    for (int d = 0; d < dim; ++d) point_host_(i, d) = points[i][d];
-  Kokkos::deep_copy(point_, point_host_);
-  dim == 2 ? sample_pressure_in<2>(fluid, point_, value_, count) : sample_pressure_in<3>(fluid, point_, value_, count);
-  Kokkos::deep_copy(value_host_, value_);
-  std::vector<double> values(count);
-  for (int i = 0; i < count; ++i) values[i] = value_host_(i);
-  return values;
-}
 
 namespace {
 
@@ -164,7 +121,8 @@ std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord leng
   return patches;
 }
 
-std::array<double, 3> wall_force(PointSampler& sampler, const Fluid& fluid, const std::vector<WallPatch>& patches) {
+std::array<double, 3> wall_force(PointSampler& sampler, const Fluid& fluid, const std::vector<WallPatch>& patches,
+                                 Reading reading) {
   const coord off = 1e-3 * fluid.spacing;
   std::vector<std::array<coord, 3>> points;
   for (const WallPatch& patch : patches)
@@ -172,7 +130,7 @@ std::array<double, 3> wall_force(PointSampler& sampler, const Fluid& fluid, cons
       points.push_back(patch.centre);
       for (int d = 0; d < 3; ++d) points.back()[d] += side * patch.normal[d];
     }
-  const std::vector<double> p = sampler.pressure(fluid, points);
+  const std::vector<double> p = sampler.pressure(fluid, points, reading);
   std::array<double, 3> force{};
   for (std::size_t k = 0; k < patches.size(); ++k)
     for (int d = 0; d < 3; ++d) force[d] += (p[2 * k + 1] - p[2 * k]) * patches[k].normal[d] * patches[k].area;

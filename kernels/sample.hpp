@@ -5,22 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "kernels/fluid.hpp"
+#include "kernels/point_sampler.hpp"
 
 namespace greenwater {
-
-/// Pressure at points in the fluid as the paper reads its loads (section 2.3, step 4): the mean of the particles in
-/// sight within the gradient's radius, weighted with w [Pa]; 0 where there is none. Uses the last sort's cells.
-class PointSampler {
- public:
-  std::vector<double> pressure(const Fluid& fluid, const std::vector<std::array<coord, 3>>& points);
-
- private:
-  CoordField point_;
-  ScalarField value_;
-  CoordField::host_mirror_type point_host_;
-  ScalarField::host_mirror_type value_host_;
-};
 
 /// A piece of wall that takes pressure from both sides.
 struct WallPatch {
@@ -32,8 +19,10 @@ struct WallPatch {
 /// Cuts the faces of one body into patches no longer than `length`.
 std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord length);
 
-/// Force of the water on the patches [N/m] in 2-D, [N] in 3-D: sum of (p_2 - p_1) normal area, the pressures read just off each side.
-std::array<double, 3> wall_force(PointSampler& sampler, const Fluid& fluid, const std::vector<WallPatch>& patches);
+/// Force of the water on the patches [N/m] in 2-D, [N] in 3-D: sum of (p_2 - p_1) normal area, the pressures read just
+/// off each side.
+std::array<double, 3> wall_force(PointSampler& sampler, const Fluid& fluid, const std::vector<WallPatch>& patches,
+                                 Reading reading);
 
 /// Furthest wet x: highest x of a particle that touches others, and half a spacing [m]; the lowest number there is when
 /// no particle does.

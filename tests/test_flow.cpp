@@ -193,14 +193,14 @@ TEST_CASE("wall force and pressure probes in 3-D", "[unit][probes]") {
   for (int i = 0; i < fluid.particles.count; ++i) p(i) = 1000 * 9.81 * (0.2 - x(i, 2));
   Kokkos::deep_copy(fluid.particles.pressure, p);
   PointSampler sampler;
-  const auto floor_point = sampler.pressure(fluid, {{0.3, 0.3, 0.001}});
+  const auto floor_point = sampler.pressure(fluid, {{0.3, 0.3, 0.001}}, Reading::average);
   CHECK(floor_point.front() == Approx(1000 * 9.81 * 0.2).epsilon(0.05));
   const auto side = wall_patches(fluid.faces, 0, fluid.spacing);
   double area = 0;
   for (const auto& patch : side) area += patch.area;
   CHECK(area == Approx(2 * 0.6 * 0.6 + 2 * 1.0 * 0.6 + 1.0 * 0.6));
   // Both sides in turn cancel; the floor alone is left, and the plate's top is pressed down.
-  const auto force = wall_force(sampler, fluid, side);
+  const auto force = wall_force(sampler, fluid, side, Reading::average);
   CHECK(force[0] == Approx(0).margin(1));
   CHECK(force[2] == Approx(-1000 * 9.81 * 0.2 * 0.6).epsilon(0.06));
   CHECK(simulation.sample(0) == Approx(1.0));
