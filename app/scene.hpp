@@ -153,7 +153,7 @@ struct ProbeCase {
   std::optional<double> y;      // surface_height in 3-D [m]; without it the column is as wide as the scene
   std::string wall;             // wall_force: name of the geometry
   std::string component = "x";  // wall_force: x | y | z
-  std::string reading;          // wall_pressure, wall_force: neumann | average
+  std::string reading;          // wall_pressure, wall_force: neumann | average; wall_force also: reaction
   Point facing{};               // wall_pressure on a wall: the direction from the wall into the water; zero: not said
   Point min{}, max{};           // particle_count: box; all of the fluid when equal
 };

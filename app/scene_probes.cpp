@@ -23,8 +23,10 @@ void read_kind(Section& section, const Scene& scene, ProbeCase& probe) {
     probe.facing = section.vector("facing", "-", scene.dimension, Point{0, 0, 0});
   }
   if (probe.kind == "wall_pressure" || probe.kind == "wall_force") {
-    const std::string usual = scene.mps.scheme == "classic" ? "average" : "neumann";
-    probe.reading = section.choice("reading", {"neumann", "average"}, usual);
+    const bool classic = scene.mps.scheme == "classic";
+    Words readings{"neumann", "average"};
+    if (probe.kind == "wall_force" && !classic) readings.emplace_back("reaction");
+    probe.reading = section.choice("reading", readings, std::string(classic ? "average" : "neumann"));
   }
   const bool boxed = section.has("min") || section.has("max");
   if (probe.kind == "particle_count" && boxed) {

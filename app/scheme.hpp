@@ -1,7 +1,9 @@
 #pragma once
 // How one fluid step is made: the order of the verbs. One file per scheme.
 
+#include <array>
 #include <memory>
+#include <vector>
 
 #include "kernels/acceleration.hpp"
 #include "kernels/effects/effect.hpp"
@@ -14,6 +16,7 @@ struct StepReport {
   SolveReport solve;
   int stopped = 0;    // ways that crossed a wall and were stopped there
   Departed departed;  // particles that left the domain
+  std::vector<std::array<double, 3>> reactions;  // on the bodies that are watched, in their order [N/m], 3-D: [N]
 };
 
 class Scheme {
@@ -21,6 +24,10 @@ class Scheme {
   virtual ~Scheme() = default;
   /// One step from t to t + dt. Rows are those of the positions of the pressure solve afterwards.
   virtual StepReport step(Fluid& fluid, Effects& effects, real dt) = 0;
+
+  /// Asks for the reaction of a body (kernels/reaction.hpp) in every report from now on; returns its place there, or -1
+  /// from a scheme that knows none.
+  virtual int watch(int /*body*/) { return -1; }
 };
 
 struct ClassicOptions {

@@ -1,6 +1,7 @@
 #include "app/scheme.hpp"
 #include "core/region.hpp"
 #include "kernels/motion.hpp"
+#include "kernels/reaction.hpp"
 #include "kernels/sample.hpp"
 
 namespace greenwater {
@@ -28,6 +29,8 @@ class Default : public Scheme {
     survey(fluid, table_of(fluid), survey_options(fluid, dt), dt, survey_);
     report.solve = solve_pressure(fluid);
 
+    for (const int body : watched_) report.reactions.push_back(wall_reaction(fluid, survey_, body));
+
     // 3  what the pressure does, and what is smoothed
     accelerate(fluid, survey_, options_.smoothing, dt);
 
@@ -39,6 +42,11 @@ class Default : public Scheme {
     return report;
   }
 
+  int watch(int body) override {
+    watched_.push_back(body);
+    return static_cast<int>(watched_.size()) - 1;
+  }
+
  private:
   const LatticeTable& table_of(const Fluid& fluid) {
     if (table_.few == 0) table_ = make_lattice_table(fluid.gradient.weight, fluid.particles.dim, fluid.spacing);
@@ -48,6 +56,7 @@ class Default : public Scheme {
   SurveyOptions survey_options(const Fluid& fluid, real dt) const {
     SurveyOptions options;
     options.drift_speed = options_.drift * options_.reference_speed;
+    options.loads = !watched_.empty();
     options.shifts = options_.shifting > 0;
     const real way = max_speed(fluid) * dt / static_cast<real>(fluid.spacing);
     if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
@@ -71,6 +80,7 @@ class Default : public Scheme {
   std::unique_ptr<Effect> separation_;
   LatticeTable table_{};
   Survey survey_;
+  std::vector<int> watched_;  // bodies whose reaction is wanted
 };
 
 }  // namespace

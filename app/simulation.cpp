@@ -62,6 +62,7 @@ Simulation::Simulation(const Scene& scene)
   for (const ProbeCase& probe : scene_.probes) {
     const bool of_pressure = probe.kind == "wall_pressure";
     pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);
+    reactions_.push_back(probe.reading == "reaction" ? scheme_->watch(body_of(fluid_.faces, probe.wall)) : -1);
     probe_motions_.push_back(of_pressure ? motion_of(scene_, fluid_.faces, probe) : nullptr);
   }
   // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
@@ -143,8 +144,10 @@ double Simulation::sample(std::size_t index) {
     return sampler_.pressure(fluid_, {now}, reading_of(probe)).front();
   }
   if (probe.kind == "wall_force") {
+    const std::size_t axis = probe.component.front() - 'x';
+    if (reactions_[index] >= 0) return steps_ > 0 ? last_.reactions[reactions_[index]][axis] : 0;
     const auto patches = wall_patches(fluid_.faces, body_of(fluid_.faces, probe.wall), fluid_.spacing);
-    return wall_force(sampler_, fluid_, patches, reading_of(probe))[probe.component.front() - 'x'];
+    return wall_force(sampler_, fluid_, patches, reading_of(probe))[axis];
   }
   expect(probe.kind == "particle_count");
   if (probe.min == probe.max) return static_cast<double>(fluid_.particles.count);

@@ -56,6 +56,15 @@ struct Image {
     return static_cast<real>(sum);
   }
 
+  /// Calls f(panel) for the walls of the path, the one next to the image first.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void for_each_wall_backwards(F f) const {
+    int others = 0;
+    while (others < 3 && mirror->also[others] >= 0) ++others;
+    for (int e = others; e > 0; --e) f(panels[mirror->also[e - 1]]);
+    for (int k = 0; k < mirror->length; ++k) f(panels[wall(k)]);
+  }
+
  private:
   // The walls of the path as the image is made: the one next to the particle first.
   template <class F>

@@ -204,6 +204,9 @@ struct Surveyor {
       div += grad[d][d];
     }
 
+    if (out.divergence_correction.extent(0) > 0)
+      for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.divergence_correction(i, k), C.c[k]);
+
     // The row
     const auto held = seen < static_cast<real>(Dim + 1);
     const Pack excess =
@@ -274,7 +277,7 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
       "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
 }
 
-void make_room(const Particles& p, bool shifts, Survey& out) {
+void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
   const std::size_t room = p.id.extent(0);
   if (out.rhs.extent(0) >= room) return;
   out.rhs = uncleared<ScalarField>("greenwater::survey_rhs", room);
@@ -282,9 +285,11 @@ void make_room(const Particles& p, bool shifts, Survey& out) {
   out.fixed = uncleared<FlagField>("greenwater::survey_fixed", room);
   out.surface = uncleared<ScalarField>("greenwater::survey_surface", room);
   out.correction = uncleared<VectorField>("greenwater::survey_correction", room, p.dim * (p.dim + 1) / 2);
+  if (options.loads)
+    out.divergence_correction = uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
   out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
   out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
-  if (shifts) out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
+  if (options.shifts) out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
 }
 
 }  // namespace
@@ -324,7 +329,7 @@ LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing) {
 
 void survey(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& found) {
   Region region("survey");
-  make_room(fluid.particles, options.shifts, found);
+  make_room(fluid.particles, options, found);
   fluid.particles.dim == 2 ? survey_in<2>(fluid, table, options, dt, found)
                            : survey_in<3>(fluid, table, options, dt, found);
 }

@@ -16,6 +16,7 @@ struct SurveyOptions {
   real drift_speed = 0;          // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
   bool shifts = true;            // whether particles are shifted at all
   real shift_rate = 0;           // part of the stiffest disorder that is undone in this step; above 2 it would grow [-]
+  bool loads = false;            // keeps what wall_reaction() needs
   real shift_limit = real(0.1);  // longest shift, x spacing
 };
 
@@ -37,6 +38,7 @@ struct Survey {
   FlagField fixed;                // 1: in free flight, without a row
   ScalarField surface;            // s: 1 at the surface, 0 inside
   VectorField correction;         // (i, place) C of the pressure's gradient, a Symmetric
+  VectorField divergence_correction;  // (i, place) M^-1 as the divergence had it; empty unless loads are asked for
   VectorField surface_point;      // v: the surface's part of the gradient is -p_i v [1/m]
   VectorField velocity_gradient;  // (i, d Dim + e) du_d / dx_e [1/s]
   VectorField shift;              // by which the particle is moved beside its own way [m]; empty when nothing shifts
