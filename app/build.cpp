@@ -9,7 +9,7 @@
 #include "core/check.hpp"
 #include "kernels/density.hpp"
 #include "kernels/packing.hpp"
-#include "kernels/sample.hpp"
+#include "kernels/speed.hpp"
 
 namespace greenwater {
 namespace {

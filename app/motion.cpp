@@ -208,20 +208,36 @@ double value_of(const TimeTable& table, std::size_t column, double t) {
   return (1 - s) * table.value[row][column] + s * table.value[row + 1][column];
 }
 
+double longest_way(const Motion& motion, double from, double to, double reach) {
+  const Point before = motion.displacement(from), after = motion.displacement(to);
+  const double turn = std::fabs(motion.angle(to) - motion.angle(from));
+  return std::hypot(after[0] - before[0], after[1] - before[1], after[2] - before[2]) + turn * reach;
+}
+
 LongestStep longest_step(const Motion& motion, double end, double time_step, double reach) {
   constexpr double most_looks = 1e5;
   const double steps = std::ceil(end / time_step), looks = std::min(steps, most_looks);
   LongestStep longest;
   for (double k = 0; k < looks; ++k) {
     const double t = std::floor(k / looks * steps) * time_step;
-    const Point before = motion.displacement(t), after = motion.displacement(t + time_step);
-    const double turn = std::fabs(motion.angle(t + time_step) - motion.angle(t));
-    const double way = std::hypot(after[0] - before[0], after[1] - before[1], after[2] - before[2]) + turn * reach;
+    const double way = longest_way(motion, t, t + time_step, reach);
     if (way <= longest.way) continue;
     longest = {way, t};
     if (!std::isfinite(way)) break;
   }
   return longest;
+}
+
+LongestStep fastest_part(const Motion& motion, LongestStep step, double time_step, double reach) {
+  constexpr int halvings = 10;
+  double to = step.time + time_step;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = (step.time + to) / 2;
+    const double first = longest_way(motion, step.time, middle, reach), second = longest_way(motion, middle, to, reach);
+    to = second > first ? to : middle;
+    step = second > first ? LongestStep{second, middle} : LongestStep{first, step.time};
+  }
+  return step;
 }
 
 }  // namespace greenwater

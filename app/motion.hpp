@@ -31,6 +31,10 @@ class Motion {
 /// The value of a column at a time: straight lines between the rows, constant outside.
 double value_of(const TimeTable& table, std::size_t column, double t);
 
+/// No point at most `reach` [m] from the axis of rotation moves further than this [m] between two times; nan or inf where
+/// the motion is none.
+double longest_way(const Motion& motion, double from, double to, double reach);
+
 /// The fastest step of a motion.
 struct LongestStep {
   double way = 0;   ///< no point within reach moves further in that step [m]; nan or inf where the motion is none
@@ -40,5 +44,8 @@ struct LongestStep {
 /// Looks at the steps from 0 to `end` [s] (of very many, at a part, evenly), for all points at most `reach` [m] from the
 /// axis of rotation.
 LongestStep longest_step(const Motion& motion, double end, double time_step, double reach);
+
+/// The fastest part of that step, a thousandth of it long: what is still long there is a jump.
+LongestStep fastest_part(const Motion& motion, LongestStep step, double time_step, double reach);
 
 }  // namespace greenwater

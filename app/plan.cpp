@@ -9,6 +9,7 @@
 
 #include "app/motion.hpp"
 #include "app/scene_shape.hpp"
+#include "app/step_length.hpp"
 
 namespace greenwater {
 namespace {
@@ -52,11 +53,15 @@ double rounded_down(double value) {
 }
 
 void warn_of_speed(const Scene& scene, Plan& plan) {
-  if (plan.cfl <= scene.mps.cfl_warn) return;
+  const MpsCase& mps = scene.mps;
+  if (plan.cfl <= mps.cfl_warn) return;
+  const std::string cure =
+      mps.adaptive ? fmt::format("mps.courant = {:.2g}", mps.cfl_warn)
+                   : fmt::format("mps.time_step = {:.2g}", rounded_down(mps.time_step * mps.cfl_warn / plan.cfl));
   plan.warnings.push_back(
       fmt::format("cfl may reach {:.2f} at the front of a collapse (2 sqrt(g H) dt / spacing), cfl_warn is {:.2g} "
-                  "-> mps.time_step = {:.2g} keeps it",
-                  plan.cfl, scene.mps.cfl_warn, rounded_down(scene.mps.time_step * scene.mps.cfl_warn / plan.cfl)));
+                  "-> {} keeps it",
+                  plan.cfl, mps.cfl_warn, cure));
 }
 
 void warn_of_output(const Scene& scene, Plan& plan) {
@@ -93,8 +98,12 @@ void warn_of_motion(const Scene& scene, Plan& plan) {
     const double cfl = step.way / scene.mps.spacing;
     if (cfl > scene.mps.cfl_warn)
       plan.warnings.push_back(
-          fmt::format("{} moves {:.2f} x spacing in the step at t = {:.4g} s, cfl_warn is {:.2g} -> mps.time_step",
-                      name, cfl, step.time, scene.mps.cfl_warn));
+          scene.mps.adaptive
+              ? fmt::format("{} would move {:.2f} x spacing in the step at t = {:.4g} s: shorter steps will be taken",
+                            name, cfl, step.time)
+              : fmt::format(
+                    "{} moves {:.2f} x spacing in the step at t = {:.4g} s, cfl_warn is {:.2g} -> mps.time_step", name,
+                    cfl, step.time, scene.mps.cfl_warn));
     for (const Shape& inner : shapes) {
       const bool holds = within(inner.bounds.min, moving.bounds, slack, scene.dimension) &&
                          within(inner.bounds.max, moving.bounds, slack, scene.dimension);
@@ -131,7 +140,8 @@ double front_cfl(const Scene& scene) {
   const std::size_t up = static_cast<std::size_t>(scene.dimension) - 1;
   const Point& g = scene.gravity;
   const double height = scene.fluid.max[up] - scene.fluid.min[up];
-  return 2 * std::sqrt(std::hypot(g[0], g[1], g[2]) * height) * scene.mps.time_step / scene.mps.spacing;
+  const double cfl = 2 * std::sqrt(std::hypot(g[0], g[1], g[2]) * height) * scene.mps.time_step / scene.mps.spacing;
+  return scene.mps.adaptive ? std::min(cfl, scene.mps.courant) : cfl;
 }
 
 std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int dimension) {
@@ -150,10 +160,12 @@ Plan plan_of(const Scene& scene) {
   plan.at_most =
       !scene.fluid.inside.empty() &&
       std::none_of(scene.boxes.begin(), scene.boxes.end(), [&](const auto& b) { return b.name == scene.fluid.inside; });
-  plan.steps = std::ceil(scene.end / scene.mps.time_step * (1 - 1e-12));
-  plan.frames = scene.output.every_time > 0
-                    ? std::min(std::floor(scene.end / scene.output.every_time + 1e-9), plan.steps) + 1
-                    : 0;
+  plan.steps = std::ceil(scene.end / step_at_rest(scene) * (1 - 1e-12));
+  plan.at_least = scene.mps.adaptive;
+  if (scene.output.every_time > 0) {
+    plan.frames = std::floor(scene.end / scene.output.every_time + 1e-9) + 1;
+    if (!plan.at_least) plan.frames = std::min(plan.frames, plan.steps + 1);
+  }
   plan.memory = memory_of(scene, plan.particles);
   plan.disk = disk_of(scene, plan.particles, plan.frames);
   plan.cfl = front_cfl(scene);
@@ -182,11 +194,11 @@ void require_memory(const Plan& plan, double memory, const Scene& scene) {
 
 std::vector<std::string> plan_lines(const Plan& plan, const Scene& scene) {
   std::vector<std::string> lines{
-      fmt::format("fluid     {}: {}{:.0f} particles, spacing {:.6g} m, dt {:.6g} s, cfl {:.2f} at the front",
+      fmt::format("fluid     {}: {}{:.0f} particles, spacing {:.6g} m, dt {}{:.6g} s, cfl {:.2f} at the front",
                   scene.fluid.name, plan.at_most ? "at most " : "", plan.particles, scene.mps.spacing,
-                  scene.mps.time_step, plan.cfl),
-      fmt::format("plan      {:.0f} steps, {:.0f} frames, {:.2g} GB disk, {:.2g} GB memory (estimates)", plan.steps,
-                  plan.frames, plan.disk / 1e9, plan.memory / 1e9)};
+                  scene.mps.adaptive ? "up to " : "", step_at_rest(scene), plan.cfl),
+      fmt::format("plan      {}{:.0f} steps, {:.0f} frames, {:.2g} GB disk, {:.2g} GB memory (estimates)",
+                  plan.at_least ? "at least " : "", plan.steps, plan.frames, plan.disk / 1e9, plan.memory / 1e9)};
   for (const std::string& warning : plan.warnings) lines.push_back("warning   " + warning);
   return lines;
 }

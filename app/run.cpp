@@ -87,7 +87,9 @@ class Run {
 };
 
 double Run::total_steps() const {
-  return options_.max_steps > 0 ? std::min(plan_.steps, static_cast<double>(options_.max_steps)) : plan_.steps;
+  if (options_.max_steps == 0) return plan_.steps;
+  const auto most = static_cast<double>(options_.max_steps);
+  return plan_.at_least ? most : std::min(plan_.steps, most);
 }
 
 bool Run::at_end() const {

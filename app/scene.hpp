@@ -130,8 +130,11 @@ struct MpsCase {
   Place spacing_place;
   std::int64_t expected_particles = 0;  // 0 = not checked
   Place expected_place;
-  double time_step = 0;  // dt [s]
+  double time_step = 0;  // dt [s]; where steps adapt, the longest one
   Place time_step_place;
+  bool adaptive = false;  // steps as long as the flow allows
+  double courant = 0.25;  // adaptive: in a step the fluid moves so many spacings
+  double growth = 1.1;    // adaptive: a step is at most so many times the one before
   double cfl_warn = 0.5;
   std::string kernel = "koshizuka_shifted";  // koshizuka_shifted (Eq. 3) | standard (re/r - 1)
   double kernel_shift = 0.05;                // the 0.05 of Eq. 3

@@ -51,6 +51,20 @@ Words read_no_slip(Section& section, const Words& walls) {
   return names;
 }
 
+void read_time_step(Section& mps, MpsCase& options) {
+  constexpr Bounds up_to_one{0, 1, false}, above_one{1, std::numeric_limits<double>::infinity(), false};
+  options.time_step = mps.number("time_step", "s", positive, example(0.00046));
+  options.time_step_place = mps.place("time_step");
+  options.adaptive = mps.flag("adaptive", options.adaptive);
+  for (const char* key : {"courant", "growth"}) {
+    require_at(mps.place(key), !mps.offers(key) || options.adaptive, key,
+               " belongs to time steps that adapt; add adaptive = true, or delete it");
+  }
+  if (!options.adaptive) return;
+  options.courant = mps.number("courant", "-", up_to_one, options.courant);
+  options.growth = mps.number("growth", "-", above_one, options.growth);
+}
+
 }  // namespace
 
 void read_default_scheme(Section section, DefaultSchemeCase& options) {
@@ -74,8 +88,7 @@ void read_mps(Section mps, Scene& scene) {
   options.spacing_place = mps.place("spacing");
   options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);
   options.expected_place = mps.place("expected_particles");
-  options.time_step = mps.number("time_step", "s", positive, example(0.00046));
-  options.time_step_place = mps.place("time_step");
+  read_time_step(mps, options);
   options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
   options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);

@@ -2,7 +2,7 @@
 #include "core/region.hpp"
 #include "kernels/motion.hpp"
 #include "kernels/reaction.hpp"
-#include "kernels/sample.hpp"
+#include "kernels/speed.hpp"
 
 namespace greenwater {
 namespace {
@@ -58,7 +58,7 @@ class Default : public Scheme {
     options.drift_speed = options_.drift * options_.reference_speed;
     options.loads = !watched_.empty();
     options.shifts = options_.shifting > 0;
-    const real way = max_speed(fluid) * dt / static_cast<real>(fluid.spacing);
+    const real way = bulk_speed(fluid) * dt / static_cast<real>(fluid.spacing);
     if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
     return options;
   }

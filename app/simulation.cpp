@@ -58,7 +58,9 @@ Simulation::Simulation(const Scene& scene)
     : scene_(scene),
       fluid_(build_fluid(scene, build_walls(scene))),
       effects_(build_effects(scene)),
-      scheme_(build_scheme(scene, fluid_)) {
+      scheme_(build_scheme(scene, fluid_)),
+      step_length_(scene),
+      dt_(step_length_.next(fluid_, std::numeric_limits<double>::infinity())) {
   for (const ProbeCase& probe : scene_.probes) {
     const bool of_pressure = probe.kind == "wall_pressure";
     pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);
@@ -73,10 +75,18 @@ Simulation::Simulation(const Scene& scene)
 
 void Simulation::step() {
   Region region("step");
+  if (steps_ > 0) dt_ = step_length_.next(fluid_, dt_);
   last_ = scheme_->step(fluid_, effects_, static_cast<real>(dt()));
   ++steps_;
-  fluid_.time = static_cast<accum>(steps_) * dt();
+  fluid_.time = time_after();
   look_after(last_);
+}
+
+/// Multiples where all steps are one, sums where they adapt; the end is met exactly.
+double Simulation::time_after() const {
+  if (!scene_.mps.adaptive) return static_cast<accum>(steps_) * dt();
+  const double left = scene_.end - time();
+  return left > 0 && dt() >= left ? scene_.end : time() + dt();
 }
 
 void Simulation::look_after(const StepReport& report) {

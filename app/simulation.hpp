@@ -2,6 +2,7 @@
 // A scene that marches: step it, and ask it how it is.
 
 #include "app/build.hpp"
+#include "app/step_length.hpp"
 #include "core/table.hpp"
 #include "core/wall_shape.hpp"
 #include "io/step_facts.hpp"
@@ -20,7 +21,8 @@ class Simulation {
 
   double time() const { return fluid_.time; }
   std::int64_t steps() const { return steps_; }
-  double dt() const { return scene_.mps.time_step; }
+  /// The last step, before the first one that one [s].
+  double dt() const { return dt_; }
 
   /// The numbers of the last step; its notices are handed out once.
   StepFacts facts();
@@ -44,6 +46,7 @@ class Simulation {
 
  private:
   void note(const std::string& kind, const std::string& text, std::int64_t count);
+  double time_after() const;
   void look_after(const StepReport& report);
   double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
 
@@ -51,6 +54,8 @@ class Simulation {
   Fluid fluid_;
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;
+  StepLength step_length_;
+  double dt_ = 0;
   PointSampler sampler_;
   std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything
   std::vector<std::unique_ptr<Motion>> probe_motions_;  // of those on a wall that moves

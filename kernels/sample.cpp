@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "kernels/speed.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -32,7 +34,6 @@ FluidSums fluid_sums_in(const Fluid& fluid, const std::array<coord, 3>& referenc
   const real g[3] = {fluid.gravity[0], fluid.gravity[1], fluid.gravity[2]};
   accum kinetic = 0, potential = 0, error2 = 0;
   int inside = 0;
-  real fastest2 = 0;
   Kokkos::parallel_reduce(
       "greenwater::fluid_sums", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, accum& ke, accum& pe, accum& e2, int& number) {
@@ -45,18 +46,11 @@ FluidSums fluid_sums_in(const Fluid& fluid, const std::array<coord, 3>& referenc
         ++number;
       },
       kinetic, potential, error2, inside);
-  Kokkos::parallel_reduce(
-      "greenwater::max_speed", Range(0, fluid.particles.count),
-      KOKKOS_LAMBDA(const int i, real& most) {
-        const auto ui = load<Dim>(u, i);
-        most = larger(most, dot(ui, ui));
-      },
-      Kokkos::Max<real>(fastest2));
   const double mass = fluid.rho * std::pow(fluid.spacing, Dim);
   FluidSums sums;
   sums.kinetic = mass * kinetic;
   sums.potential = mass * potential;
-  sums.max_speed = std::isfinite(kinetic) ? std::sqrt(fastest2) : kinetic;  // a maximum may overlook what is no number
+  sums.max_speed = max_speed(fluid);
   sums.density_error = inside > 0 ? std::sqrt(error2 / inside) : 0;
   return sums;
 }
@@ -171,21 +165,6 @@ std::int64_t particle_count(const Fluid& fluid, const std::array<coord, 3>& low,
       },
       total);
   return total;
-}
-
-real max_speed(const Fluid& fluid) {
-  real m = 0;
-  const auto u = Read<VectorField>(fluid.particles.velocity);
-  const int dim = fluid.particles.dim;
-  Kokkos::parallel_reduce(
-      "greenwater::max_speed", Range(0, fluid.particles.count),
-      KOKKOS_LAMBDA(const int i, real& most) {
-        real s = 0;
-        for (int d = 0; d < dim; ++d) s += u(i, d) * u(i, d);
-        most = larger(most, s);
-      },
-      Kokkos::Max<real>(m));
-  return std::sqrt(m);
 }
 
 FluidSums fluid_sums(const Fluid& fluid, const std::array<coord, 3>& reference) {

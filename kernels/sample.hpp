@@ -43,9 +43,6 @@ struct FluidSums {
   double max_speed = 0;      // [m/s]; not a number when any speed is not
   double density_error = 0;  // root mean square of n / n^0 - 1 where no surface is [-]
 };
-/// Highest speed of a particle [m/s].
-real max_speed(const Fluid& fluid);
-
 FluidSums fluid_sums(const Fluid& fluid, const std::array<coord, 3>& reference);
 
 }  // namespace greenwater

@@ -236,6 +236,30 @@ acceleration = ["-0.1*u", 0, "x*w"]
   }
 }
 
+TEST_CASE("where steps adapt nothing is too fast for them but a jump", "[unit][case]") {
+  const std::string adaptive = with("time_step = \"2.3 ms\"", "time_step = \"20 ms\"\nadaptive = true");
+  const std::string fast = "[geometry.plate.motion]\nvelocity = [0, \"40*t/0.01\"]\n";
+  CHECK(complaint_about(adaptive).empty());
+  CHECK(complaint_about(adaptive, {set_option("fluid.0.velocity=[500, 0]")}).empty());
+  CHECK(complaint_about(adaptive + fast).empty());
+  CHECK(contains(complaint_about(small_case() + fast), "m in the step at"));
+  const std::string jump =
+      complaint_about(adaptive + "[geometry.plate.motion]\ndisplacement = [\"t < 0.01 ? 0 : 0.05\", 0]\n");
+  INFO(jump);
+  CHECK(contains(jump, "moves 0.05 m in a thousandth of mps.time_step at t = 0.0"));
+  CHECK(contains(jump, "without a jump"));
+  CaseFile first(adaptive, "a.toml", {set_option("mps.courant=0.2")});
+  CHECK(read_scene(first).mps.adaptive);
+  CaseFile second(first.resolved(), "b.toml", {});
+  CHECK(read_scene(second).mps.courant == 0.2);
+  CHECK(without_comments(first.resolved()) == without_comments(second.resolved()));
+  CHECK(contains(first.resolved(), "growth = 1.1  # -; default"));
+  CaseFile fixed(small_case(), "c.toml", {});
+  read_scene(fixed);
+  CHECK(contains(fixed.resolved(), "adaptive = false  # default"));
+  CHECK(!contains(fixed.resolved(), "courant"));
+}
+
 TEST_CASE("polylines come from files, and are filled to a level", "[unit][case]") {
   const TemporaryFolder folder;
   write_text(folder / "hull.csv", "x,y\n0.0,0.3\n0.2,0.0\n0.4,0.3\n");
@@ -386,6 +410,11 @@ TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
       {"spacing = 0.02", "spacing = 0.02\nradius_density = 1.0", "must be at least 1.1"},
       {"spacing = 0.02", "spacing = inf", "finite"},
       {"time_step = \"2.3 ms\"", "time_step = 1", "longer than the run"},
+      {"spacing = 0.02", "spacing = 0.02\ncourant = 0.2", "courant belongs to time steps that adapt"},
+      {"spacing = 0.02", "spacing = 0.02\nadaptive = false\ngrowth = 1.2", "add adaptive = true, or delete it"},
+      {"spacing = 0.02", "spacing = 0.02\nadaptive = true\ngrowth = 1", "growth = 1.0 must be above 1"},
+      {"spacing = 0.02", "spacing = 0.02\nadaptive = true\ncourant = 2", "courant = 2.0 must be at most 1"},
+      {"spacing = 0.02", "spacing = 0.02\nadaptve = true", "did you mean \"adaptive\"?"},
       {"base = [0.3, 0.0]", "base = [0.5, 0.0]", "not inside the box"},
       {"base = [0.3, 0.0]", "base = [0.3]", "needs 2 components"},
       {"open = [\"top\"]", "open = [\"top\", \"up\"]", "open cannot be \"up\""},
@@ -487,6 +516,19 @@ TEST_CASE("the plan warns of what is allowed and hardly meant", "[unit][case]") 
   CHECK(contains(warnings("[geometry.gate.motion]\nvelocity = [0, 0, 8]\n"), "gate moves 0.80 x spacing in the step"));
   CHECK(contains(warnings("[[probe]]\nname = \"p\"\nkind = \"wall_pressure\"\npoint = [5, 0, 0]\n"),
                  "probe p is outside"));
+}
+
+TEST_CASE("the plan of steps that adapt knows the fewest", "[unit][case]") {
+  const Scene scene = scene_of(small_case(), {set_option("mps.adaptive=true"), set_option("mps.time_step=0.02")});
+  const Plan plan = plan_of(scene);
+  const double dt = 0.25 * std::sqrt(0.02 / 9.81);
+  CHECK(plan.steps == std::ceil(0.02 / dt));
+  CHECK(plan.at_least);
+  CHECK(plan.frames == 5);
+  CHECK(plan.cfl == 0.25);
+  const auto lines = plan_lines(plan, scene);
+  CHECK(contains(lines[0], "dt up to 0.0112881 s, cfl 0.25"));
+  CHECK(contains(lines[1], "at least 2 steps"));
 }
 
 TEST_CASE("the plan counts in 3-D", "[unit][case]") {

@@ -109,3 +109,16 @@ TEST_CASE("the longest step of a motion is found", "[unit][motion]") {
   motion.velocity = formulas("t > 0.5 ? sqrt(0.5 - t) : 0", "0");
   CHECK(std::isnan(longest_step(Motion(motion), 1, 0.01, 0.5).way));
 }
+
+TEST_CASE("a jump stays as long in a short time, a fast motion does not", "[unit][motion]") {
+  MotionCase smooth, jump;
+  smooth.velocity = formulas("t", "0");
+  jump.displacement = formulas("0", "t < 0.7 ? t : 0.2 + t");
+  const Motion by_speed(smooth), by_jump(jump);
+  const LongestStep part = fastest_part(by_speed, {0.375, 0.5}, 0.5, 0);
+  CHECK(part.way == Approx(0.5 / 1024).epsilon(1e-3));
+  CHECK(part.time == Approx(1 - 0.5 / 1024));
+  const LongestStep leap = fastest_part(by_jump, longest_step(by_jump, 1, 0.1, 0), 0.1, 0);
+  CHECK(leap.way == Approx(0.2).epsilon(1e-3));
+  CHECK(leap.time == Approx(0.7).margin(1e-4));
+}

@@ -1,0 +1,67 @@
+#include "app/step_length.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/scene_shape.hpp"
+#include "core/check.hpp"
+#include "kernels/speed.hpp"
+
+namespace greenwater {
+
+double step_at_rest(const Scene& scene) {
+  constexpr double share = 0.25;  // of what is stable
+  const MpsCase& mps = scene.mps;
+  double dt = mps.time_step;
+  if (!mps.adaptive) return dt;
+  for (const ViscosityCase& viscosity : scene.viscosity)
+    dt = std::min(dt, share * mps.spacing * mps.spacing / (scene.dimension * viscosity.kinematic));
+  const Point& g = scene.gravity;
+  const double fall = std::hypot(g[0], g[1], g[2]);
+  return fall > 0 ? std::min(dt, share * std::sqrt(mps.spacing / fall)) : dt;
+}
+
+StepLength::StepLength(const Scene& scene)
+    : adaptive_(scene.mps.adaptive),
+      at_rest_(step_at_rest(scene)),
+      end_(scene.end),
+      way_(scene.mps.courant * scene.mps.spacing),
+      growth_(scene.mps.growth) {
+  for (const Shape& shape : shapes_of(scene))
+    if (shape.geometry->motion) walls_.push_back({Motion(*shape.geometry->motion), reach_of(shape)});
+}
+
+double StepLength::next(const Fluid& fluid, double previous) const {
+  if (!adaptive_) return at_rest_;
+  const double dt = slow_enough(fluid, std::min(at_rest_, growth_ * previous));
+  const double left = end_ - fluid.time;
+  if (left <= 0 || left >= 2 * dt) return dt;
+  return left <= dt ? left : left / 2;
+}
+
+double StepLength::slow_enough(const Fluid& fluid, double dt) const {
+  const double speed = bulk_speed(fluid);
+  require<NumericsError>(std::isfinite(speed), "t = ", fluid.time,
+                         " s: a velocity is not a number; a shorter mps.time_step or a smaller spacing may help");
+  if (speed * dt > way_) dt = way_ / speed;
+  return slow_enough_for_walls(fluid.time, dt);
+}
+
+double StepLength::slow_enough_for_walls(double time, double longest) const {
+  constexpr int halvings = 30;
+  constexpr double shortest = 1e-3, round_off = 1e-9;
+  const auto good = [&](double dt) {
+    return std::all_of(walls_.begin(), walls_.end(), [&](const MovingWall& wall) {
+      return longest_way(wall.motion, time, time + dt, wall.reach) <= (1 + round_off) * way_;
+    });
+  };
+  if (good(longest)) return longest;
+  double below = 0, above = longest;
+  for (int k = 0; k < halvings; ++k) {
+    const double middle = (below + above) / 2;
+    (good(middle) ? below : above) = middle;
+  }
+  return below > shortest * longest ? below : longest;  // a wall that jumps does so most gently in a long step
+}
+
+}  // namespace greenwater

@@ -1,0 +1,40 @@
+#pragma once
+// How long a step is: always the same, or as long as the flow allows.
+
+#include <vector>
+
+#include "app/motion.hpp"
+#include "kernels/fluid.hpp"
+
+namespace greenwater {
+
+/// The longest step of the run [s]: mps.time_step; where steps adapt not more than 0.25 l0^2 / (dim nu), for viscosity is
+/// explicit, and 0.25 sqrt(l0 / g), which moves a particle at rest by a thirtieth of l0.
+double step_at_rest(const Scene& scene);
+
+class StepLength {
+ public:
+  explicit StepLength(const Scene& scene);
+
+  /// The step from fluid.time on [s]. Where steps adapt: the bulk of the fluid, and no wall, moves further than courant l0
+  /// in it; it is at most growth x `previous` [s] (infinite: there is none), and such that the last step ends at the end of
+  /// the run without being tiny, because a density error is worth a pressure of 1/dt^2. Throws NumericsError when a
+  /// velocity is not a number.
+  double next(const Fluid& fluid, double previous) const;
+
+ private:
+  struct MovingWall {
+    Motion motion;
+    double reach;  // [m] from its axis
+  };
+  double slow_enough(const Fluid& fluid, double dt) const;
+  double slow_enough_for_walls(double time, double longest) const;
+
+  bool adaptive_;
+  double at_rest_, end_;  // [s]
+  double way_;            // courant l0 [m]
+  double growth_;         // [-]
+  std::vector<MovingWall> walls_;
+};
+
+}  // namespace greenwater
