@@ -9,8 +9,8 @@ namespace {
 
 template <int Dim>
 std::array<double, 3> wall_reaction_in(const Fluid& fluid, const Survey& survey, int body) {
-  const auto near = around<Dim>(fluid);
   const auto w = fluid.gradient.weight;
+  const auto near = around_unmoved<Dim>(fluid, w);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto correction = Read<VectorField>(survey.divergence_correction);
   const auto fixed = Read<FlagField>(survey.fixed);
@@ -33,13 +33,14 @@ std::array<double, 3> wall_reaction_in(const Fluid& fluid, const Survey& survey,
           const auto r = difference(image_position(mirror, xj), xi);
           const coord r2 = dot(r, r);
           if (!(r2 > touching)) continue;
-          const coord weight = near.images.share(place) * w(static_cast<real>(sqrt(r2))) / r2;
+          real weight = near.images.share(place) * w(static_cast<real>(sqrt(r2)));
+          if (near.kept) weight = static_cast<float>(weight);  // as the divergence had it
           const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(), {}};
           auto pull = product(C, r);
           image.for_each_wall_backwards([&](const Panel& wall) {
             const auto n = Sight<Dim>::as_vec(wall.normal);
             const coord along_n = dot(pull, n);
-            if (wall.body == body) force = along(force, weight * along_n, n);
+            if (wall.body == body) force = along(force, weight / r2 * along_n, n);
             pull = along(pull, -2 * along_n, n);
           });
         }

@@ -319,7 +319,9 @@ LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing) {
     table.tilt[row] = static_cast<real>(S[row] / n[row]);
   }
   const double m = table.missing[0];
-  table.full = table.tilt[0] / 4;
+  // The second row is at the surface where its view is clearly one-sided; with a small radius it is not.
+  const bool second = table.tilt[1] > table.tilt[0] / 5;
+  table.full = second ? real(0.9) * table.tilt[1] : real(0.5) * table.tilt[0];
   table.none = table.full / 2;
   table.bulge = static_cast<real>((S[0] / n0 / 0.5 / m - 1) / m);
   table.shift = static_cast<real>(1 / shift_stiffness(weight, dim, spacing));

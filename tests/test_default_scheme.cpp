@@ -1,0 +1,308 @@
+// The parts of the default scheme: rows that a still fluid solves to the last digit, gradients that are exact for linear
+// fields, smoothing that is blind to smooth flow, and a wall load that does the fluid's work.
+#include <cmath>
+
+#include "app/scheme.hpp"
+#include "kernels/acceleration.hpp"
+#include "kernels/motion.hpp"
+#include "kernels/reaction.hpp"
+#include "tests/shapes.hpp"
+#include "tests/support.hpp"
+
+using namespace greenwater;
+using namespace greenwater::test;
+
+namespace {
+
+constexpr coord l0 = 0.1;
+constexpr real dt = real(1e-3), g = real(9.81);
+
+WallFaces tank_2d(coord width, coord height) {
+  return walls_of({segment(0, 0, width, 0), segment(0, height, 0, 0), segment(width, 0, width, height)});
+}
+
+Positions shaken(int nx, int ny, int nz, coord jitter, unsigned seed = 1) {
+  std::mt19937 generator(seed);
+  std::uniform_real_distribution<coord> shake(-jitter * l0, jitter * l0);
+  Positions x;
+  for (int k = 0; k < nz; ++k)
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i)
+        x.push_back({(i + 0.5) * l0 + shake(generator), (j + 0.5) * l0 + shake(generator),
+                     (k + 0.5) * l0 + shake(generator)});
+  return x;
+}
+
+FluidOptions standard(int dim, coord radius) {
+  FluidOptions options;
+  options.dim = dim;
+  options.spacing = l0;
+  options.radius = radius;
+  options.shift = 0;
+  return options;
+}
+
+// Water 1 m deep, on a lattice that is shaken.
+Fluid tank(int dim, coord radius, coord jitter) {
+  if (dim == 2) {
+    Fluid fluid = fluid_at(lattice(12, 10, l0, 0, 0, jitter), tank_2d(1.2, 2), standard(2, radius));
+    fluid.gravity[1] = -g;
+    return fluid;
+  }
+  Fluid fluid = fluid_at(shaken(8, 7, 10, jitter), open_box(0.8, 0.7, 2), standard(3, radius));
+  fluid.gravity[2] = -g;
+  return fluid;
+}
+
+Survey surveyed(const Fluid& fluid, SurveyOptions options = {}) {
+  Survey found;
+  const auto table = make_lattice_table(fluid.gradient.weight, fluid.particles.dim, fluid.spacing);
+  survey(fluid, table, options, dt, found);
+  return found;
+}
+
+template <class F>
+void set_pressure(Fluid& fluid, F of_place) {
+  const auto x = host(fluid.particles.position);
+  const auto p = Kokkos::create_mirror(fluid.particles.pressure);
+  for (int i = 0; i < fluid.particles.count; ++i)
+    p(i) = static_cast<real>(of_place(std::array<coord, 3>{x(i, 0), x(i, 1), fluid.particles.dim == 3 ? x(i, 2) : 0}));
+  Kokkos::deep_copy(fluid.particles.pressure, p);
+}
+
+template <class F>
+void set_velocity(Fluid& fluid, F of_place) {
+  const auto x = host(fluid.particles.position);
+  const auto u = Kokkos::create_mirror(fluid.particles.velocity);
+  for (int i = 0; i < fluid.particles.count; ++i) {
+    const auto v = of_place(std::array<coord, 3>{x(i, 0), x(i, 1), fluid.particles.dim == 3 ? x(i, 2) : 0});
+    for (int d = 0; d < fluid.particles.dim; ++d) u(i, d) = static_cast<real>(v[d]);
+  }
+  Kokkos::deep_copy(fluid.particles.velocity, u);
+}
+
+// Largest entry of A p - b over those whose place `counts`, over K n0 rho g l0.
+template <class F>
+double worst_row(const Fluid& fluid, const Survey& found, F counts) {
+  PressureSystem system({});
+  system.assemble(fluid, found.rhs, found.diagonal, found.fixed);
+  const ScalarField Ap("greenwater::test_Ap", fluid.particles.id.extent(0));
+  system.apply(fluid.particles.pressure, Ap);
+  const auto product = host(Ap), b = host(found.rhs);
+  const auto x = host(fluid.particles.position);
+  double worst = 0;
+  for (int i = 0; i < fluid.particles.count; ++i)
+    if (counts(x(i, fluid.particles.dim - 1))) worst = std::max(worst, std::fabs(static_cast<double>(product(i) - b(i))));
+  return worst / (system.factor() * fluid.gradient.reference.n0 * fluid.rho * g * l0);
+}
+
+double depth_pressure(const Fluid& fluid, const std::array<coord, 3>& x) {
+  return fluid.rho * g * (1 - x[fluid.particles.dim - 1]);
+}
+
+struct Kind {
+  int dim;
+  coord radius;  // x l0
+  coord jitter;  // x l0; twelve neighbours bear less before one of them tells of a surface where there is none
+};
+const Kind kinds[] = {{2, 3.1, 0.1}, {2, 2.1, 0.05}, {3, 2.1, 0.1}, {3, 3.1, 0.1}};
+
+}  // namespace
+
+TEST_CASE("still water solves the rows to the last digit, from the lattice up to its surface", "[unit][default]") {
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = tank(dim, radius, 0);
+    set_pressure(fluid, [&](const auto& x) { return depth_pressure(fluid, x); });
+    CHECK(worst_row(fluid, surveyed(fluid), [](coord) { return true; }) < 1e-6);  // weights are kept as floats
+  }
+}
+
+TEST_CASE("still water solves the rows however particles lie, away from the surface", "[unit][default]") {
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = tank(dim, radius, jitter);
+    set_pressure(fluid, [&](const auto& x) { return depth_pressure(fluid, x); });
+    const Survey found = surveyed(fluid);
+    const coord deep = 1 - 1.2 * radius * l0;
+    CHECK(worst_row(fluid, found, [&](coord y) { return y < deep; }) < 1e-5);
+    // Near it the level that each particle estimates differs.
+    CHECK(worst_row(fluid, found, [](coord) { return true; }) < 0.5);
+  }
+}
+
+TEST_CASE("the pressure's gradient is exact for a linear pressure, at walls and at the surface", "[unit][default]") {
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = tank(dim, radius, jitter);
+    set_pressure(fluid, [&](const auto& x) { return depth_pressure(fluid, x); });
+    const Survey found = surveyed(fluid);
+    accelerate(fluid, found, {}, dt);
+    const auto a = host(fluid.particles.acceleration);
+    const auto x = host(fluid.particles.position);
+    for (int i = 0; i < fluid.particles.count; ++i) {
+      const bool below = x(i, dim - 1) < 1 - 1.2 * radius * l0;
+      for (int d = 0; d < dim; ++d)
+        CHECK(std::fabs(a(i, d) + fluid.gravity[d]) < (below ? 1e-5 * g : 0.6 * g));  // what pressure does undoes gravity
+    }
+  }
+}
+
+TEST_CASE("grad u is exact for a linear flow inside", "[unit][default]") {
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = fluid_at(dim == 2 ? lattice(16, 16, l0, 0, 0, jitter) : shaken(12, 12, 12, jitter), {},
+                           standard(dim, radius));
+    set_velocity(fluid, [](const auto& x) {
+      return std::array<double, 3>{2 * x[0] - 3 * x[1] + x[2], 5 * x[0] + x[1], x[2] - x[0]};
+    });
+    const double expected[3][3] = {{2, -3, 1}, {5, 1, 0}, {-1, 0, 1}};
+    const Survey found = surveyed(fluid);
+    const auto gradient = host(found.velocity_gradient);
+    const auto s = host(found.surface);
+    int inside = 0;
+    for (int i = 0; i < fluid.particles.count; ++i) {
+      if (s(i) > 0) continue;
+      ++inside;
+      for (int d = 0; d < dim; ++d)
+        for (int e = 0; e < dim; ++e) CHECK(gradient(i, d * dim + e) == Approx(expected[d][e]).margin(1e-5));
+    }
+    CHECK(inside > fluid.particles.count / 8);
+  }
+}
+
+TEST_CASE("smoothing leaves linear flow alone and keeps momentum", "[unit][default]") {
+  SmoothingOptions smoothing;
+  smoothing.speed = 1;
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = fluid_at(dim == 2 ? lattice(14, 14, l0, 0, 0, jitter) : shaken(8, 8, 8, jitter), {},
+                           standard(dim, radius));
+    const auto flow = [](const auto& x) { return std::array<double, 3>{2 * x[0] - 3 * x[1], 5 * x[0] + x[1], x[2]}; };
+    set_velocity(fluid, flow);
+    Survey found = surveyed(fluid);
+    accelerate(fluid, found, smoothing, dt);
+    const auto s = host(found.surface);
+    auto a = host(fluid.particles.acceleration);
+    const auto near = entries_of(fluid);
+    for (int i = 0; i < fluid.particles.count; ++i) {
+      bool inside = s(i) == 0;
+      for (const Entry& entry : near[i]) inside = inside && s(entry.j) == 0;
+      if (inside)
+        for (int d = 0; d < dim; ++d) CHECK(std::fabs(a(i, d)) < 1e-5);
+    }
+
+    std::mt19937 generator(3);
+    std::uniform_real_distribution<double> any(-1, 1);
+    set_velocity(fluid, [&](const auto&) { return std::array<double, 3>{any(generator), any(generator), any(generator)}; });
+    found = surveyed(fluid);
+    accelerate(fluid, found, smoothing, dt);
+    a = host(fluid.particles.acceleration);
+    double largest = 0;
+    for (int d = 0; d < dim; ++d) {
+      double sum = 0;
+      for (int i = 0; i < fluid.particles.count; ++i) {
+        sum += a(i, d);
+        largest = std::max(largest, std::fabs(static_cast<double>(a(i, d))));
+      }
+      CHECK(std::fabs(sum) < 1e-6 * largest * fluid.particles.count);
+    }
+    CHECK(largest > 0.1);  // it did something
+  }
+}
+
+TEST_CASE("the wall's reaction does the fluid's work, and a constant pressure gives p times the area", "[unit][default]") {
+  SurveyOptions options;
+  options.loads = true;
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = tank(dim, radius, jitter);
+    fluid.gravity[0] = fluid.gravity[1] = fluid.gravity[2] = 0;
+    const std::array<double, 3> v{0.3, -0.2, dim == 3 ? 0.7 : 0};
+    for (WallFace& face : fluid.faces.faces)
+      for (WallPoint& corner : face.corner)
+        for (int d = 0; d < 3; ++d) corner.velocity[d] = v[d];
+    make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), l0);
+    fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
+    set_pressure(fluid, [&](const auto& x) { return depth_pressure(fluid, x); });
+    const Survey found = surveyed(fluid, options);
+    // The fluid rests: all divergence is the wall's.
+    const auto b = host(found.rhs);
+    const auto p = host(fluid.particles.pressure);
+    double work = 0;
+    for (int i = 0; i < fluid.particles.count; ++i) work += -b(i) * dt / fluid.rho * p(i) * std::pow(l0, dim);
+    const auto force = wall_reaction(fluid, found, 0);
+    const double power = force[0] * v[0] + force[1] * v[1] + force[2] * v[2];
+    CHECK(power == Approx(work).epsilon(1e-9));
+  }
+  Fluid fluid = tank(2, 3.1, 0);
+  set_pressure(fluid, [](const auto&) { return 1000; });
+  const auto force = wall_reaction(fluid, surveyed(fluid, options), 0);
+  CHECK(force[0] == Approx(0).margin(1e-6));
+  CHECK(force[1] == Approx(-1000 * 1.2).epsilon(1e-6));  // on the floor
+}
+
+TEST_CASE("drops that nobody is near fly as the law of falling says", "[unit][default]") {
+  Fluid fluid = fluid_at({{0, 0, 0}, {3, 0, 0}, {3.05, 0.05, 0}}, {}, standard(2, 3.1));
+  fluid.gravity[1] = -g;
+  set_velocity(fluid, [](const auto&) { return std::array<double, 3>{1, 2, 0}; });
+  Effects none;
+  DefaultOptions options;
+  options.reference_speed = 1;
+  const auto scheme = make_default(options);
+  const int steps = 50;
+  for (int k = 0; k < steps; ++k) scheme->step(fluid, none, dt);
+  const auto u = host(fluid.particles.velocity);
+  for (int i = 0; i < fluid.particles.count; ++i) {
+    CHECK(u(i, 0) == Approx(1).epsilon(1e-12));
+    CHECK(u(i, 1) == Approx(2 - g * steps * dt).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("shifting undoes the stiffest disorder of a lattice and no more", "[unit][default]") {
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    const auto table = make_lattice_table({static_cast<real>(radius * l0), 0}, dim, l0);
+    CHECK(table.missing[0] > table.missing[1]);
+    CHECK(table.missing[1] >= table.missing[2]);
+    SurveyOptions options;
+    options.shift_rate = 1;
+    options.shift_limit = 1;
+    // Rows that stand apart and close in turn along x: short waves are the stiffest.
+    const double amplitude = 1e-3 * l0;
+    Positions at = dim == 2 ? lattice(20, 20, l0) : shaken(12, 12, 12, 0);
+    for (auto& x : at) x[0] += amplitude * (static_cast<int>(x[0] / l0) % 2 == 0 ? 1 : -1);
+    const Fluid fluid = fluid_at(at, {}, standard(dim, radius));
+    const Survey found = surveyed(fluid, options);
+    const auto shift = host(found.shift);
+    const auto s = host(found.surface);
+    const auto x = host(fluid.particles.position);
+    double most = 0;
+    for (int i = 0; i < fluid.particles.count; ++i) {
+      if (s(i) > 0) continue;
+      const double off = x(i, 0) / l0 - std::floor(x(i, 0) / l0) - 0.5;
+      const double undone = -shift(i, 0) / (off * l0);
+      CHECK(undone > 0);
+      most = std::max(most, undone);
+    }
+    CHECK(most <= 1 + 1e-3);
+    CHECK(most > 0.3);
+  }
+}
+
+TEST_CASE("a default scheme that neither shifts nor keeps apart launches and holds nothing for it", "[unit][default]") {
+  Fluid fluid = tank(2, 3.1, 0.1);
+  Effects none;
+  DefaultOptions options;
+  options.reference_speed = 1;
+  options.shifting = 0;
+  options.separation = 0;
+  const Ears ears;
+  const auto scheme = make_default(options);
+  scheme->step(fluid, none, dt);
+  CHECK(ears.launched("survey"));
+  CHECK_FALSE(ears.launched("collision"));
+  CHECK_FALSE(ears.allocated("collision"));
+  CHECK_FALSE(ears.allocated("survey_shift"));
+  CHECK_FALSE(ears.allocated("divergence_correction"));
+}
