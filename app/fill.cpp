@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 #include "app/plan.hpp"
@@ -65,6 +66,31 @@ std::vector<Point> fill_inside(const Scene& scene) {
   return kept;
 }
 
+bool in_a_plate(const Scene& scene, const Point& x) {
+  return std::any_of(scene.plates.begin(), scene.plates.end(),
+                     [&](const PlateCase& plate) { return inside_plate(plate, x, scene.dimension); });
+}
+
+// From -1 to 1, the same for a number on every machine (Steele, Lea and Flood's splitmix64).
+double random_of(std::uint64_t number) {
+  number = (number + 1) * 0x9e3779b97f4a7c15U;
+  number = (number ^ (number >> 30)) * 0xbf58476d1ce4e5b9U;
+  number = (number ^ (number >> 27)) * 0x94d049bb133111ebU;
+  number ^= number >> 31;
+  return static_cast<double>(number >> 11) * 0x1p-52 - 1;  // 53 bits: exact
+}
+
+// Each by its own number; who would end in a plate stays.
+void shake(const Scene& scene, std::vector<Point>& points) {
+  const double most = scene.fluid.jitter * scene.mps.spacing;
+  if (most == 0) return;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    Point x = points[i];
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d) x[d] += most * random_of(3 * i + d);
+    if (!in_a_plate(scene, x)) points[i] = x;
+  }
+}
+
 }  // namespace
 
 bool needs_spreading(const Scene& scene) {
@@ -76,12 +102,11 @@ std::vector<Point> fill(const Scene& scene) {
   std::vector<Point> points = needs_spreading(scene)
                                   ? fill_inside(scene)
                                   : lattice(scene.fluid, scene.fluid.min, scene.mps.spacing, scene.dimension);
-  for (const PlateCase& plate : scene.plates)
-    points.erase(std::remove_if(points.begin(), points.end(),
-                                [&](const Point& x) { return inside_plate(plate, x, scene.dimension); }),
-                 points.end());
+  points.erase(std::remove_if(points.begin(), points.end(), [&](const Point& x) { return in_a_plate(scene, x); }),
+               points.end());
   require_at(scene.fluid.place, !points.empty(),
              "the fluid's region holds no particle: enlarge it or take a smaller mps.spacing");
+  shake(scene, points);
   return points;
 }
 

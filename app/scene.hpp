@@ -86,6 +86,7 @@ struct FluidCase {
   Point min, max;          // [m] box filled with particles at the cell centres of a lattice of the spacing
   std::string inside;      // or: the inside of this geometry (box, closed polyline, closed mesh) ...
   double level = 0;        // ... up to this height [m] along the last axis; min, max are then its bounds
+  double jitter = 0;       // x spacing: how far a particle starts from its lattice point along an axis, at most
   VectorFormula velocity;  // [m/s] initial, in x, y, z
 };
 

@@ -1,5 +1,6 @@
 // [[fluid]]: what is filled with water.
 
+#include "app/fill.hpp"
 #include "app/scene_parts.hpp"
 #include "app/scene_shape.hpp"
 #include "core/interior.hpp"
@@ -66,6 +67,16 @@ void read_box_region(Section& region, const Scene& scene, FluidCase& fluid) {
   fluid.max = corners.max;
 }
 
+void read_jitter(Section& section, Scene& scene) {
+  constexpr double half = 0.5;  // from the middle of a cell to its side
+  FluidCase& fluid = scene.fluid;
+  fluid.jitter = section.number("jitter", "x spacing", at_least(0), fluid.jitter);
+  require_at(section.place("jitter"), fluid.jitter < half, "jitter = ", fluid.jitter,
+             " x spacing must be below 0.5, or particles leave their region");
+  require_at(section.place("jitter"), fluid.jitter == 0 || !needs_spreading(scene), "jitter = ", fluid.jitter,
+             " is lost in \"", fluid.inside, "\": particles are spread evenly there; delete it, or fill a box");
+}
+
 }  // namespace
 
 void read_fluid(Section root, Scene& scene) {
@@ -88,6 +99,7 @@ void read_fluid(Section root, Scene& scene) {
   const std::string type = region.choice("type", {"box", "inside"}, std::string("box"));
   if (type == "box") read_box_region(region, scene, fluid);
   if (type == "inside") read_inside(region, scene, fluid);
+  read_jitter(section, scene);
 }
 
 }  // namespace greenwater

@@ -94,6 +94,7 @@ const std::vector<Bad> bad_cases{
     {"wrong_type", "20:11", "must be a number [m]", "not true or false"},
     {"missing_key", "19:", "missing key \"time_step\" [s] in [mps]", "add for example: time_step = "},
     {"misspelt_key", "16:1", "unknown key \"densty\" in [[fluid]]", "did you mean \"density\"?"},
+    {"jitter_too_large", "17:10", "jitter = 0.5 x spacing", "must be below 0.5"},
     {"negative_spacing", "20:11", "spacing = -0.01 [m]", "must be above 0"},
     {"not_a_number", "8:7", "end", "must be a finite number [s]"},
     {"empty_fluid", "17:1", "the fluid is empty", "enlarge the region or take a smaller spacing"},
