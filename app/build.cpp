@@ -191,16 +191,16 @@ double reference_speed(const Scene& scene, const Fluid& fluid) {
 }
 
 std::unique_ptr<Scheme> build_default(const Scene& scene, const Fluid& fluid) {
-  const DefaultSchemeCase& standard = scene.mps.standard;
+  const DefaultSchemeCase& parts = scene.mps.parts;
   DefaultOptions options;
   options.solver = solver_options(scene.mps);
   options.reference_speed =
-      static_cast<real>(standard.reference_speed > 0 ? standard.reference_speed : reference_speed(scene, fluid));
-  options.drift = static_cast<real>(standard.drift);
-  options.shifting = static_cast<real>(standard.shifting);
-  options.smoothing.inside = static_cast<real>(standard.smoothing);
-  options.smoothing.at_surface = static_cast<real>(standard.surface_smoothing);
-  options.separation = static_cast<real>(standard.separation);
+      static_cast<real>(parts.reference_speed > 0 ? parts.reference_speed : reference_speed(scene, fluid));
+  options.drift = static_cast<real>(parts.drift);
+  options.shifting = static_cast<real>(parts.shifting);
+  options.smoothing.inside = static_cast<real>(parts.smoothing);
+  options.smoothing.at_surface = static_cast<real>(parts.surface_smoothing);
+  options.separation = static_cast<real>(parts.separation);
   return make_default(options);
 }
 

@@ -125,9 +125,9 @@ struct DefaultSchemeCase {
 };
 
 struct MpsCase {
-  std::string scheme = "classic";
-  DefaultSchemeCase standard;
-  double spacing = 0;  // l0 [m]
+  std::string scheme = "default";
+  DefaultSchemeCase parts;  // of scheme default
+  double spacing = 0;       // l0 [m]
   Place spacing_place;
   std::int64_t expected_particles = 0;  // 0 = not checked
   Place expected_place;

@@ -17,7 +17,7 @@ int small_count(Section& section, const std::string& key, std::int64_t low, std:
   return static_cast<int>(value);
 }
 
-void read_pressure(Section section, PressureCase& options) {
+void read_pressure(Section section, bool classic, PressureCase& options) {
   options.weights = section.choice("weights", {"kept", "recomputed"}, options.weights);
   const bool kept = options.weights == "kept";
   if (!kept) options.preconditioner = "jacobi";
@@ -30,7 +30,7 @@ void read_pressure(Section section, PressureCase& options) {
              "tolerance = 0 needs an absolute_tolerance above 0, or the solve never ends");
   options.max_iterations = small_count(section, "max_iterations", 1, options.max_iterations);
   options.on_stall = section.choice("on_stall", {"fail", "warn"}, options.on_stall);
-  options.source = section.choice("source", {"density", "divergence"}, options.source);
+  if (classic) options.source = section.choice("source", {"density", "divergence"}, options.source);
 }
 
 double not_zero(Section& section, const std::string& key, double value) {
@@ -65,31 +65,49 @@ void read_time_step(Section& mps, MpsCase& options) {
   options.growth = mps.number("growth", "-", above_one, options.growth);
 }
 
-}  // namespace
-
-void read_default_scheme(Section section, DefaultSchemeCase& options) {
-  options.reference_speed = section.number("reference_speed", "m/s", at_least(0), options.reference_speed);
-  options.drift = section.number("drift", "-", at_least(0), options.drift);
-  options.shifting = section.number("shifting", "-", at_least(0), options.shifting);
-  options.smoothing = section.number("smoothing", "-", at_least(0), options.smoothing);
-  options.surface_smoothing = section.number("surface_smoothing", "-", at_least(0), options.surface_smoothing);
-  options.separation = section.number("separation", "x spacing", between(0, 1), options.separation);
+/// Keys of one scheme in a case of another one say nothing about it.
+void refuse_keys(Section& mps, const Words& keys, const std::string& scheme, const std::string& mending) {
+  for (const std::string& key : keys)
+    require_at(mps.place(key), !mps.offers(key), key, " belongs to scheme = \"", scheme, "\"; ", mending);
 }
 
-void read_mps(Section mps, Scene& scene) {
-  constexpr double least_radius = 1.1, most_radius = 10;  // x spacing: neighbours at all, and memory
-  constexpr double usual_radius_3d = 2.1;                 // of the literature; some 40 neighbours, where 3.1 means 125
-  MpsCase& options = scene.mps;
-  if (scene.dimension == 3)
-    options.radius_density = options.radius_gradient = options.radius_laplacian = usual_radius_3d;
-  options.scheme = mps.choice("scheme", {"default", "classic"}, options.scheme);
-  if (options.scheme == "default") options.kernel = "standard";
-  options.spacing = mps.number("spacing", "m", positive, example(0.004));
-  options.spacing_place = mps.place("spacing");
-  options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);
-  options.expected_place = mps.place("expected_particles");
-  read_time_step(mps, options);
-  options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
+const Words classic_keys{"kernel",
+                         "kernel_shift",
+                         "radius_density",
+                         "radius_gradient",
+                         "radius_laplacian",
+                         "multiplication_coefficient",
+                         "relaxation_factor",
+                         "compressibility",
+                         "free_surface_ratio"};
+
+constexpr double most_radius = 10;       // x spacing: memory
+constexpr double usual_radius_3d = 2.1;  // of the literature; some 40 neighbours, where 3.1 means 125
+
+void set_radii(MpsCase& options, double radius) {
+  options.radius_density = options.radius_gradient = options.radius_laplacian = radius;
+}
+
+void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
+  constexpr double least_radius = 2;  // x spacing: a second row tells where the surface is
+  refuse_keys(mps, classic_keys, "classic", "delete it, or take that scheme");
+  options.kernel = "standard";
+  const double usual = dimension == 3 ? usual_radius_3d : options.radius_laplacian;
+  set_radii(options, mps.number("radius", "x spacing", between(least_radius, most_radius), usual));
+  Section section = mps.table("default");
+  DefaultSchemeCase& parts = options.parts;
+  parts.reference_speed = section.number("reference_speed", "m/s", at_least(0), parts.reference_speed);
+  parts.drift = section.number("drift", "-", at_least(0), parts.drift);
+  parts.shifting = section.number("shifting", "-", at_least(0), parts.shifting);
+  parts.smoothing = section.number("smoothing", "-", at_least(0), parts.smoothing);
+  parts.surface_smoothing = section.number("surface_smoothing", "-", at_least(0), parts.surface_smoothing);
+  parts.separation = section.number("separation", "x spacing", between(0, 1), parts.separation);
+}
+
+void read_classic_scheme(Section& mps, int dimension, MpsCase& options) {
+  constexpr double least_radius = 1.1;  // x spacing: neighbours at all
+  refuse_keys(mps, {"radius", "default"}, "default", "classic has a radius for each of its sums: radius_density, ...");
+  if (dimension == 3) set_radii(options, usual_radius_3d);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
   options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);
   for (auto [key, radius] :
@@ -102,8 +120,22 @@ void read_mps(Section mps, Scene& scene) {
   options.relaxation_factor = mps.number("relaxation_factor", "-", positive, options.relaxation_factor);
   options.compressibility = mps.number("compressibility", "1/Pa", at_least(0), options.compressibility);
   options.free_surface_ratio = mps.number("free_surface_ratio", "-", between(0, 1), options.free_surface_ratio);
-  read_pressure(mps.table("pressure"), options.pressure);
-  if (options.scheme == "default") read_default_scheme(mps.table("default"), options.standard);
+}
+
+}  // namespace
+
+void read_mps(Section mps, Scene& scene) {
+  MpsCase& options = scene.mps;
+  options.scheme = mps.choice("scheme", {"default", "classic"}, options.scheme);
+  options.spacing = mps.number("spacing", "m", positive, example(0.004));
+  options.spacing_place = mps.place("spacing");
+  options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);
+  options.expected_place = mps.place("expected_particles");
+  read_time_step(mps, options);
+  options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
+  const bool classic = options.scheme == "classic";
+  (classic ? read_classic_scheme : read_default_scheme)(mps, scene.dimension, options);
+  read_pressure(mps.table("pressure"), classic, options.pressure);
 }
 
 void read_effects(Section effects, Scene& scene) {

@@ -14,8 +14,8 @@ namespace greenwater {
 /// What happened in a step.
 struct StepReport {
   SolveReport solve;
-  int stopped = 0;    // ways that crossed a wall and were stopped there
-  Departed departed;  // particles that left the domain
+  int stopped = 0;                               // ways that crossed a wall and were stopped there
+  Departed departed;                             // particles that left the domain
   std::vector<std::array<double, 3>> reactions;  // on the bodies that are watched, in their order [N/m], 3-D: [N]
 };
 

@@ -17,9 +17,7 @@ int body_of(const WallFaces& walls, const std::string& name) {
   return static_cast<int>(found - walls.bodies.begin());
 }
 
-Reading reading_of(const ProbeCase& probe) {
-  return probe.reading == "average" ? Reading::average : Reading::neumann;
-}
+Reading reading_of(const ProbeCase& probe) { return probe.reading == "average" ? Reading::average : Reading::neumann; }
 
 // "The lowest number there is" of a maximum over nothing.
 double or_nothing(double value) { return value < -1e300 ? std::numeric_limits<double>::quiet_NaN() : value; }

@@ -59,7 +59,7 @@ class Simulation {
   PointSampler sampler_;
   std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything
   std::vector<std::unique_ptr<Motion>> probe_motions_;  // of those on a wall that moves
-  std::vector<int> reactions_;  // of each probe; place in the step's report, or -1
+  std::vector<int> reactions_;                          // of each probe; place in the step's report, or -1
   Point potential_zero_{};
   double first_energy_ = 0;
   std::int64_t steps_ = 0, retired_ = 0;

@@ -39,6 +39,7 @@ region = {{ type = "box", min = [0.0, 0.0], max = [0.2, 0.4] }}
 kinematic = 1.0e-6
 [effects.collision]
 [mps]
+scheme = "classic"
 spacing = {0:.17g}
 time_step = {1:.17g}
 [mps.pressure]
@@ -62,6 +63,7 @@ region = {{ type = "box", min = [0.0, 0.0, 0.0], max = [0.3, 0.3, 0.33] }}
 kinematic = 1.0e-6
 [effects.collision]
 [mps]
+scheme = "classic"
 spacing = {0:.17g}
 time_step = {1:.17g}
 [mps.pressure]

@@ -286,7 +286,8 @@ void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
   out.surface = uncleared<ScalarField>("greenwater::survey_surface", room);
   out.correction = uncleared<VectorField>("greenwater::survey_correction", room, p.dim * (p.dim + 1) / 2);
   if (options.loads)
-    out.divergence_correction = uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
+    out.divergence_correction =
+        uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
   out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
   out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
   if (options.shifts) out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);

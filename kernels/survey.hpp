@@ -34,14 +34,14 @@ LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
 
 /// What is known of every particle after a survey; fields like those of the particles.
 struct Survey {
-  ScalarField rhs, diagonal;      // of the pressure's row (kernels/pressure_system.hpp)
-  FlagField fixed;                // 1: in free flight, without a row
-  ScalarField surface;            // s: 1 at the surface, 0 inside
-  VectorField correction;         // (i, place) C of the pressure's gradient, a Symmetric
+  ScalarField rhs, diagonal;          // of the pressure's row (kernels/pressure_system.hpp)
+  FlagField fixed;                    // 1: in free flight, without a row
+  ScalarField surface;                // s: 1 at the surface, 0 inside
+  VectorField correction;             // (i, place) C of the pressure's gradient, a Symmetric
   VectorField divergence_correction;  // (i, place) M^-1 as the divergence had it; empty unless loads are asked for
-  VectorField surface_point;      // v: the surface's part of the gradient is -p_i v [1/m]
-  VectorField velocity_gradient;  // (i, d Dim + e) du_d / dx_e [1/s]
-  VectorField shift;              // by which the particle is moved beside its own way [m]; empty when nothing shifts
+  VectorField surface_point;          // v: the surface's part of the gradient is -p_i v [1/m]
+  VectorField velocity_gradient;      // (i, d Dim + e) du_d / dx_e [1/s]
+  VectorField shift;  // by which the particle is moved beside its own way [m]; empty when nothing shifts
 };
 
 /// Surveys all particles with u* in particles.velocity (without gravity) and makes the rows of the pressure:

@@ -106,7 +106,7 @@ const std::vector<Bad> bad_cases{
     {"fluid_outside_tank", "17:1", "reaches out of the box \"tank\"", "shrink the region or enlarge the box"},
     {"cut_short", "17:55", "encountered end-of-file", "copy the rest again"},
     {"spacing_above_tank", "20:11", "1.5 m is larger than the box \"tank\", which is 0.4 m wide", "a smaller spacing"},
-    {"huge_radius", "21:18", "radius_density = 1e+06", "must be at most 10"},
+    {"huge_radius", "21:10", "radius = 1e+06", "must be at most 10"},
     {"too_many_steps", "21:13", "more than 1e12 steps of time.end = 1e+300 s", "take a longer step or an earlier end"},
     {"step_too_long", "21:13", "140.071 particle distances in one step", "take less than 0.0017848 s"},
     {"velocity_not_finite", "17:12", "velocity is no finite number at [", "mend the formula"},
@@ -172,7 +172,7 @@ TEST_CASE("the resolved case reads back to itself", "[unit][case]") {
   CaseFile first(
       with("end = \"20 ms\"", "end = \"20 ms\"\ngravity = [0, \"-981 cm/s^2\"]") +
           "[effects.body_force]\nacceleration = [\"0.1*sin(2*pi*t)\", 0.5]\n[domain]\nmin = [-1, -1]\nmax = [2, 2]\n",
-      "a.toml", {set_option("mps.radius_density=2.1")});
+      "a.toml", {set_option("mps.radius=2.1")});
   const Scene scene = read_scene(first);
   CaseFile second(first.resolved(), "b.toml", {});
   const Scene again = read_scene(second);
@@ -184,7 +184,7 @@ TEST_CASE("the resolved case reads back to itself", "[unit][case]") {
   CHECK(again.body_force.at(0).acceleration.text == scene.body_force.at(0).acceleration.text);
   CHECK(again.probes.size() == 2);
   CHECK(again.plates.at(0).height == 0.05);
-  CHECK(contains(first.resolved(), "radius_density = 2.1  # x spacing; command line"));
+  CHECK(contains(first.resolved(), "radius = 2.1  # x spacing; command line"));
   CHECK(contains(first.resolved(), "end = 0.02  # s; case"));
   CHECK(contains(first.resolved(), "density = 1000.0  # kg/m^3; default"));
 }
@@ -408,7 +408,12 @@ TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
       {"name = \"load\"", "name = \"front\"", "two probes have the name"},
       {"wall = \"plate\"", "wall = \"plat\"", "did you mean \"plate\"?"},
       {"kind = \"wall_force\"", "kind = \"surface_height\"", "missing key \"x\" [m]"},
-      {"spacing = 0.02", "spacing = 0.02\nradius_density = 1.0", "must be at least 1.1"},
+      {"spacing = 0.02", "spacing = 0.02\nradius = 1.9", "must be at least 2"},
+      {"spacing = 0.02", "spacing = 0.02\nscheme = \"classic\"\nradius_density = 1.0", "must be at least 1.1"},
+      {"spacing = 0.02", "spacing = 0.02\nradius_density = 2.5", "radius_density belongs to scheme = \"classic\""},
+      {"spacing = 0.02", "spacing = 0.02\nmultiplication_coefficient = 1.05", "delete it, or take that scheme"},
+      {"spacing = 0.02", "spacing = 0.02\nscheme = \"classic\"\nradius = 2.5",
+       "radius belongs to scheme = \"default\""},
       {"spacing = 0.02", "spacing = inf", "finite"},
       {"time_step = \"2.3 ms\"", "time_step = 1", "longer than the run"},
       {"spacing = 0.02", "spacing = 0.02\ncourant = 0.2", "courant belongs to time steps that adapt"},
@@ -469,7 +474,7 @@ TEST_CASE("a case in 3-D that makes no sense is refused", "[unit][case]") {
        "overlap"},
       {"[[fluid]]", "[geometry.gate.motion]\nrotation = \"t\"\nabout = [0, 0, 0]\naxis = [0, 0, 0]\n[[fluid]]",
        "axis has no direction"},
-      {"spacing = 0.02", "spacing = 0.02\nradius_gradient = 11", "must be at most 10"},
+      {"spacing = 0.02", "spacing = 0.02\nradius = 11", "must be at most 10"},
       {"[[fluid]]", "[domain]\nmin = [-1e6, -1e6, -1e6]\nmax = [1e6, 1e6, 1e6]\n[[fluid]]", "a smaller [domain]"},
   };
   for (const auto& [before, after, answer] : slips) {

@@ -28,8 +28,8 @@ Positions shaken(int nx, int ny, int nz, coord jitter, unsigned seed = 1) {
   for (int k = 0; k < nz; ++k)
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i)
-        x.push_back({(i + 0.5) * l0 + shake(generator), (j + 0.5) * l0 + shake(generator),
-                     (k + 0.5) * l0 + shake(generator)});
+        x.push_back(
+            {(i + 0.5) * l0 + shake(generator), (j + 0.5) * l0 + shake(generator), (k + 0.5) * l0 + shake(generator)});
   return x;
 }
 
@@ -92,7 +92,8 @@ double worst_row(const Fluid& fluid, const Survey& found, F counts) {
   const auto x = host(fluid.particles.position);
   double worst = 0;
   for (int i = 0; i < fluid.particles.count; ++i)
-    if (counts(x(i, fluid.particles.dim - 1))) worst = std::max(worst, std::fabs(static_cast<double>(product(i) - b(i))));
+    if (counts(x(i, fluid.particles.dim - 1)))
+      worst = std::max(worst, std::fabs(static_cast<double>(product(i) - b(i))));
   return worst / (system.factor() * fluid.gradient.reference.n0 * fluid.rho * g * l0);
 }
 
@@ -143,7 +144,8 @@ TEST_CASE("the pressure's gradient is exact for a linear pressure, at walls and 
     for (int i = 0; i < fluid.particles.count; ++i) {
       const bool below = x(i, dim - 1) < 1 - 1.2 * radius * l0;
       for (int d = 0; d < dim; ++d)
-        CHECK(std::fabs(a(i, d) + fluid.gravity[d]) < (below ? 1e-5 * g : 0.6 * g));  // what pressure does undoes gravity
+        CHECK(std::fabs(a(i, d) + fluid.gravity[d]) <
+              (below ? 1e-5 * g : 0.6 * g));  // what pressure does undoes gravity
     }
   }
 }
@@ -151,8 +153,8 @@ TEST_CASE("the pressure's gradient is exact for a linear pressure, at walls and 
 TEST_CASE("grad u is exact for a linear flow inside", "[unit][default]") {
   for (const auto& [dim, radius, jitter] : kinds) {
     INFO(dim << "-D, radius " << radius);
-    Fluid fluid = fluid_at(dim == 2 ? lattice(16, 16, l0, 0, 0, jitter) : shaken(12, 12, 12, jitter), {},
-                           standard(dim, radius));
+    Fluid fluid =
+        fluid_at(dim == 2 ? lattice(16, 16, l0, 0, 0, jitter) : shaken(12, 12, 12, jitter), {}, standard(dim, radius));
     set_velocity(fluid, [](const auto& x) {
       return std::array<double, 3>{2 * x[0] - 3 * x[1] + x[2], 5 * x[0] + x[1], x[2] - x[0]};
     });
@@ -176,8 +178,8 @@ TEST_CASE("smoothing leaves linear flow alone and keeps momentum", "[unit][defau
   smoothing.speed = 1;
   for (const auto& [dim, radius, jitter] : kinds) {
     INFO(dim << "-D, radius " << radius);
-    Fluid fluid = fluid_at(dim == 2 ? lattice(14, 14, l0, 0, 0, jitter) : shaken(8, 8, 8, jitter), {},
-                           standard(dim, radius));
+    Fluid fluid =
+        fluid_at(dim == 2 ? lattice(14, 14, l0, 0, 0, jitter) : shaken(8, 8, 8, jitter), {}, standard(dim, radius));
     const auto flow = [](const auto& x) { return std::array<double, 3>{2 * x[0] - 3 * x[1], 5 * x[0] + x[1], x[2]}; };
     set_velocity(fluid, flow);
     Survey found = surveyed(fluid);
@@ -194,7 +196,9 @@ TEST_CASE("smoothing leaves linear flow alone and keeps momentum", "[unit][defau
 
     std::mt19937 generator(3);
     std::uniform_real_distribution<double> any(-1, 1);
-    set_velocity(fluid, [&](const auto&) { return std::array<double, 3>{any(generator), any(generator), any(generator)}; });
+    set_velocity(fluid, [&](const auto&) {
+      return std::array<double, 3>{any(generator), any(generator), any(generator)};
+    });
     found = surveyed(fluid);
     accelerate(fluid, found, smoothing, dt);
     a = host(fluid.particles.acceleration);
@@ -211,7 +215,8 @@ TEST_CASE("smoothing leaves linear flow alone and keeps momentum", "[unit][defau
   }
 }
 
-TEST_CASE("the wall's reaction does the fluid's work, and a constant pressure gives p times the area", "[unit][default]") {
+TEST_CASE("the wall's reaction does the fluid's work, and a constant pressure gives p times the area",
+          "[unit][default]") {
   SurveyOptions options;
   options.loads = true;
   for (const auto& [dim, radius, jitter] : kinds) {

@@ -206,8 +206,7 @@ TEST_CASE("a rolling tank by moving walls is the same in its own frame", "[valid
     largest_difference = std::max(largest_difference, std::fabs(sway - sway_frame));
     const auto force_of = [](Simulation& s) {
       PointSampler sampler;
-      return wall_force(sampler, s.fluid(), wall_patches(s.fluid().faces, 0, s.fluid().spacing),
-                        Reading::average);
+      return wall_force(sampler, s.fluid(), wall_patches(s.fluid().faces, 0, s.fluid().spacing), Reading::average);
     };
     const auto f = force_of(walls.simulation), g = force_of(frame.simulation);
     const double share = walls.simulation.dt() / 0.03;
