@@ -11,7 +11,6 @@ class Default : public Scheme {
  public:
   explicit Default(const DefaultOptions& options)
       : options_(options), pressure_({}), solver_(make_pressure_solver(options.solver)) {
-    options_.smoothing.speed = options.reference_speed;
     if (options.separation > 0) separation_ = make_collision({options.separation, real(0.2), 5});
   }
 
@@ -26,12 +25,14 @@ class Default : public Scheme {
     kick(fluid, dt);
 
     // 2  the pressure that keeps the flow free of divergence
-    survey(fluid, table_of(fluid), survey_options(fluid, dt), dt, survey_);
+    const real bulk = bulk_speed(fluid), U = options_.reference_speed > 0 ? options_.reference_speed : bulk;
+    survey(fluid, table_of(fluid), survey_options(U, bulk * dt / static_cast<real>(fluid.spacing)), dt, survey_);
     report.solve = solve_pressure(fluid);
 
     for (const int body : watched_) report.reactions.push_back(wall_reaction(fluid, survey_, body));
 
     // 3  what the pressure does, and what is smoothed
+    options_.smoothing.speed = U;
     accelerate(fluid, survey_, options_.smoothing, dt);
 
     // 4  particles and walls go on
@@ -53,12 +54,12 @@ class Default : public Scheme {
     return table_;
   }
 
-  SurveyOptions survey_options(const Fluid& fluid, real dt) const {
+  // U: the flow's speed [m/s]; way: of the bulk of the fluid in this step, x spacing.
+  SurveyOptions survey_options(real U, real way) const {
     SurveyOptions options;
-    options.drift_speed = options_.drift * options_.reference_speed;
+    options.drift_speed = options_.drift * U;
     options.loads = !watched_.empty();
     options.shifts = options_.shifting > 0;
-    const real way = bulk_speed(fluid) * dt / static_cast<real>(fluid.spacing);
     if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
     return options;
   }
