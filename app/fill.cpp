@@ -7,6 +7,7 @@
 
 #include "app/plan.hpp"
 #include "app/plate_frame.hpp"
+#include "app/scene_shape.hpp"
 #include "core/interior.hpp"
 
 namespace greenwater {
@@ -32,6 +33,24 @@ std::vector<Point> lattice_in_the_middle(const FluidCase& fluid, double spacing,
   for (std::size_t d = 0; d < static_cast<std::size_t>(dimension); ++d)
     from[d] += std::max(0.0, (fluid.max[d] - fluid.min[d] - cells[d] * spacing) / 2);
   return lattice(fluid, from, spacing, dimension);
+}
+
+// Cells about the centre, which is a corner of four of them, in 3-D of eight: those whose own centre is in the ball. Told
+// in cells, where centres are exact, so that nothing but the centre's own digits spoils the symmetry.
+std::vector<Point> lattice_in_ball(const BallCase& ball, double spacing, int dimension) {
+  const double radius = ball.radius / spacing;
+  const int n = static_cast<int>(std::ceil(radius - 0.5)), nz = dimension == 3 ? n : 0;
+  const double middle_z = dimension == 3 ? 0.5 : 0;
+  std::vector<Point> points;
+  for (int k = -nz; k < std::max(nz, 1); ++k)
+    for (int j = -n; j < n; ++j)
+      for (int i = -n; i < n; ++i) {
+        const Point cell{i + 0.5, j + 0.5, k + middle_z};
+        if (cell[0] * cell[0] + cell[1] * cell[1] + cell[2] * cell[2] >= radius * radius) continue;
+        points.push_back(ball.centre);
+        for (std::size_t d = 0; d < 3; ++d) points.back()[d] += cell[d] * spacing;
+      }
+  return points;
 }
 
 Interior interior_of(const Scene& scene) {
@@ -80,14 +99,15 @@ double random_of(std::uint64_t number) {
   return static_cast<double>(number >> 11) * 0x1p-52 - 1;  // 53 bits: exact
 }
 
-// Each by its own number; who would end in a plate stays.
+// Each by its own number; who would end in a plate, or beside a ball, stays.
 void shake(const Scene& scene, std::vector<Point>& points) {
   const double most = scene.fluid.jitter * scene.mps.spacing;
   if (most == 0) return;
   for (std::size_t i = 0; i < points.size(); ++i) {
     Point x = points[i];
     for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d) x[d] += most * random_of(3 * i + d);
-    if (!in_a_plate(scene, x)) points[i] = x;
+    const bool leaves = scene.fluid.ball && !inside_ball(*scene.fluid.ball, x);
+    if (!leaves && !in_a_plate(scene, x)) points[i] = x;
   }
 }
 
@@ -99,9 +119,10 @@ bool needs_spreading(const Scene& scene) {
 }
 
 std::vector<Point> fill(const Scene& scene) {
-  std::vector<Point> points = needs_spreading(scene)
-                                  ? fill_inside(scene)
-                                  : lattice(scene.fluid, scene.fluid.min, scene.mps.spacing, scene.dimension);
+  const FluidCase& fluid = scene.fluid;
+  std::vector<Point> points = needs_spreading(scene) ? fill_inside(scene)
+                              : fluid.ball           ? lattice_in_ball(*fluid.ball, scene.mps.spacing, scene.dimension)
+                                                     : lattice(fluid, fluid.min, scene.mps.spacing, scene.dimension);
   points.erase(std::remove_if(points.begin(), points.end(), [&](const Point& x) { return in_a_plate(scene, x); }),
                points.end());
   require_at(scene.fluid.place, !points.empty(),

@@ -46,6 +46,16 @@ double disk_of(const Scene& scene, double particles, double frames) {
   return frames * particles * (h5 * real_scale + vtp);
 }
 
+/// By the lattice, in a ball by its volume.
+double particles_of(const Scene& scene) {
+  if (scene.fluid.ball) {
+    const double r = scene.fluid.ball->radius / scene.mps.spacing;
+    return std::round(std::numbers::pi * (scene.dimension == 2 ? r * r : 4.0 / 3 * r * r * r));
+  }
+  const auto cells = lattice_cells(scene.fluid, scene.mps.spacing, scene.dimension);
+  return cells[0] * cells[1] * cells[2];
+}
+
 /// Two figures, rounded down: a suggestion to type.
 double rounded_down(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -155,8 +165,7 @@ std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int 
 
 Plan plan_of(const Scene& scene) {
   Plan plan;
-  const auto cells = lattice_cells(scene.fluid, scene.mps.spacing, scene.dimension);
-  plan.particles = cells[0] * cells[1] * cells[2];
+  plan.particles = particles_of(scene);
   plan.at_most =
       !scene.fluid.inside.empty() &&
       std::none_of(scene.boxes.begin(), scene.boxes.end(), [&](const auto& b) { return b.name == scene.fluid.inside; });

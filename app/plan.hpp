@@ -18,7 +18,8 @@ struct Plan {
   std::vector<std::string> warnings;
 };
 
-/// The cells of the fluid's lattice along x, y, z; their product is the particle count, where the region is a box.
+/// The cells of the fluid's lattice along x, y, z, in its bounds; their product is the particle count, where the region is
+/// a box.
 std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int dimension);
 
 /// How many particle distances the front of a collapse runs in one step: 2 sqrt(g H) dt / spacing; not more than mps.courant

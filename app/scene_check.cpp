@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "app/motion.hpp"
 #include "app/plan.hpp"
@@ -93,7 +94,8 @@ void check_fluid_in_boxes(const Check& check) {
   bool held = false;
   for (const BoxCase& box : scene.boxes) held = held || check.holds({box.min, box.max});
   for (const PolylineCase& line : scene.polylines)
-    held = held || (line.closed && inside_polyline(line, scene.fluid.min));
+    held =
+        held || (line.closed && inside_polyline(line, scene.fluid.ball ? scene.fluid.ball->centre : scene.fluid.min));
   for (const Shape& shape : shapes_of(scene)) {
     const auto is_it = [&](const MeshCase& mesh) { return &mesh == shape.geometry && mesh.closed; };
     held = held || (std::any_of(scene.meshes.begin(), scene.meshes.end(), is_it) && check.holds(shape.bounds));
@@ -102,6 +104,26 @@ void check_fluid_in_boxes(const Check& check) {
   require_at(scene.fluid.place, held, "the fluid reaches out of the box \"", first.name, "\" from ",
              shown_point(first.min, scene.dimension), " to ", shown_point(first.max, scene.dimension),
              " m; shrink the region or enlarge the box");
+}
+
+/// Points along the rim of the fluid in 2-D, a little inwards, because walls belong to neither side.
+std::vector<Point> rim_points(const Check& check) {
+  constexpr int round = 32;
+  const FluidCase& fluid = check.scene.fluid;
+  const double inwards = 1e-3 * check.scene.mps.spacing;
+  const Point &a = fluid.min, &b = fluid.max;
+  if (!fluid.ball) {
+    return {{a[0] + inwards, a[1] + inwards, 0},
+            {b[0] - inwards, a[1] + inwards, 0},
+            {b[0] - inwards, b[1] - inwards, 0},
+            {a[0] + inwards, b[1] - inwards, 0}};
+  }
+  std::vector<Point> points;
+  for (int k = 0; k < round; ++k) {
+    const double turn = 2 * std::numbers::pi * k / round, r = fluid.ball->radius - inwards;
+    points.push_back({fluid.ball->centre[0] + r * std::cos(turn), fluid.ball->centre[1] + r * std::sin(turn), 0});
+  }
+  return points;
 }
 
 /// Where one closed wall is all there is, water that is half in it was meant to be in it.
@@ -114,11 +136,8 @@ void check_fluid_in_only_wall(const Check& check) {
   const Corners& bounds = shapes.front().bounds;
   bool astride = false;
   for (const PolylineCase& line : scene.polylines) {
-    const double inwards = 1e-3 * scene.mps.spacing;  // walls belong to neither side
     bool all = true;
-    for (const Point& corner : {Point{a[0] + inwards, a[1] + inwards, 0}, Point{b[0] - inwards, a[1] + inwards, 0},
-                                Point{b[0] - inwards, b[1] - inwards, 0}, Point{a[0] + inwards, b[1] - inwards, 0}})
-      all = all && inside_polyline(line, corner);
+    for (const Point& x : rim_points(check)) all = all && inside_polyline(line, x);
     astride = line.closed && !all && inside_polyline(line, centre);
   }
   for (const MeshCase& mesh : scene.meshes)
@@ -145,7 +164,7 @@ std::vector<Point> samples(const Check& check) {
         const Point s{i / along, j / along, k / deep};
         Point x{};
         for (std::size_t d = 0; d < check.axes; ++d) x[d] = fluid.min[d] + s[d] * (fluid.max[d] - fluid.min[d]);
-        points.push_back(x);
+        if (!fluid.ball || inside_ball(*fluid.ball, x)) points.push_back(x);
       }
   return points;
 }

@@ -67,6 +67,18 @@ void read_box_region(Section& region, const Scene& scene, FluidCase& fluid) {
   fluid.max = corners.max;
 }
 
+void read_ball(Section& region, const Scene& scene, FluidCase& fluid) {
+  const Point shown = scene.dimension == 2 ? Point{0.2, 0.2, 0} : Point{0.2, 0.2, 0.2};
+  BallCase ball;
+  ball.centre = region.vector("centre", "m", scene.dimension, example(shown));
+  ball.radius = region.number("radius", "m", positive, example(0.1));
+  for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d) {
+    fluid.min[d] = ball.centre[d] - ball.radius;
+    fluid.max[d] = ball.centre[d] + ball.radius;
+  }
+  fluid.ball = ball;
+}
+
 void read_jitter(Section& section, Scene& scene) {
   constexpr double half = 0.5;  // from the middle of a cell to its side
   FluidCase& fluid = scene.fluid;
@@ -96,8 +108,9 @@ void read_fluid(Section root, Scene& scene) {
   fluid.velocity = read_formulas(section, {"velocity", "m/s", at_rest, Variables::place_and_time}, scene.dimension);
   Section region = section.table("region");
   fluid.place = region.place();
-  const std::string type = region.choice("type", {"box", "inside"}, std::string("box"));
+  const std::string type = region.choice("type", {"box", "ball", "inside"}, std::string("box"));
   if (type == "box") read_box_region(region, scene, fluid);
+  if (type == "ball") read_ball(region, scene, fluid);
   if (type == "inside") read_inside(region, scene, fluid);
   read_jitter(section, scene);
 }

@@ -69,6 +69,10 @@ bool inside_polyline(const PolylineCase& line, const Point& x) {
   return inside;
 }
 
+bool inside_ball(const BallCase& ball, const Point& x) {
+  return std::hypot(x[0] - ball.centre[0], x[1] - ball.centre[1], x[2] - ball.centre[2]) < ball.radius;
+}
+
 double reach_of(const Shape& shape) {
   if (!shape.geometry->motion) return 0;
   const Point &about = shape.geometry->motion->about, &k = shape.geometry->motion->axis;

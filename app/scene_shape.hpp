@@ -31,6 +31,9 @@ std::vector<std::array<double, 2>> plate_section(const PlateCase& plate, int dim
 /// True when the point is inside the closed polyline; on it, either.
 bool inside_polyline(const PolylineCase& line, const Point& x);
 
+/// True when the point is closer to the centre than the radius.
+bool inside_ball(const BallCase& ball, const Point& x);
+
 /// How far any point of a moving geometry is from its axis of rotation, at most [m].
 double reach_of(const Shape& shape);
 

@@ -95,6 +95,8 @@ const std::vector<Bad> bad_cases{
     {"missing_key", "19:", "missing key \"time_step\" [s] in [mps]", "add for example: time_step = "},
     {"misspelt_key", "16:1", "unknown key \"densty\" in [[fluid]]", "did you mean \"density\"?"},
     {"jitter_too_large", "17:10", "jitter = 0.5 x spacing", "must be below 0.5"},
+    {"negative_radius", "16:57", "radius = -0.05 [m]", "must be above 0"},
+    {"ball_outside_tank", "16:1", "reaches out of the box \"tank\"", "shrink the region or enlarge the box"},
     {"negative_spacing", "20:11", "spacing = -0.01 [m]", "must be above 0"},
     {"not_a_number", "8:7", "end", "must be a finite number [s]"},
     {"empty_fluid", "17:1", "the fluid is empty", "enlarge the region or take a smaller spacing"},
@@ -522,6 +524,64 @@ TEST_CASE("the plan warns of what is allowed and hardly meant", "[unit][case]") 
   CHECK(contains(warnings("[geometry.gate.motion]\nvelocity = [0, 0, 8]\n"), "gate moves 0.80 x spacing in the step"));
   CHECK(contains(warnings("[[probe]]\nname = \"p\"\nkind = \"wall_pressure\"\npoint = [5, 0, 0]\n"),
                  "probe p is outside"));
+}
+
+TEST_CASE("the plan counts a ball by its volume", "[unit][case]") {
+  const auto particles = [](const std::string& text, const std::string& region) {
+    const Plan plan = plan_of(scene_of(text, {set_option("fluid.0.region=" + region)}));
+    CHECK(!plan.at_most);
+    return plan.particles;
+  };
+  CHECK(particles(small_case(), "{type=\"ball\", centre=[0.2, 0.2], radius=0.1}") == 79);           // 25 pi
+  CHECK(particles(tank_3d(), "{type=\"ball\", centre=[0.2, 0.1, 0.2], radius=\"10 cm\"}") == 524);  // 500 pi / 3
+}
+
+TEST_CASE("a ball reads back to itself, and needs its own keys", "[unit][case]") {
+  const std::string region = "region = { type = \"box\", min = [0.0, 0.0], max = [0.1, 0.2] }";
+  const std::string text = with(region, "region = { type = \"ball\", centre = [0.2, \"15 cm\"], radius = 0.1 }");
+  CaseFile first(text, "a.toml", {});
+  const Scene scene = read_scene(first);
+  CaseFile second(first.resolved(), "b.toml", {});
+  const Scene again = read_scene(second);
+  CHECK(without_comments(first.resolved()) == without_comments(second.resolved()));
+  CHECK(again.fluid.ball.value().centre == Point{0.2, 0.15, 0});
+  CHECK(again.fluid.ball.value().radius == 0.1);
+  CHECK(scene.fluid.min[0] == Approx(0.1));
+  CHECK(scene.fluid.max[1] == Approx(0.25));
+  for (const auto& [before, after, answer] : std::vector<std::array<std::string, 3>>{
+           {"centre = [0.2, \"15 cm\"]", "center = [0.2, 0.15]", "did you mean \"centre\"?"},
+           {"radius = 0.1", "max = [0.3, 0.3]", "missing key \"radius\" [m]"},
+           {"radius = 0.1", "radius = 0.2", "reaches out of the box"},
+           {"radius = 0.1", "radius = 0.005", "the fluid is empty"},
+           {"centre = [0.2, \"15 cm\"]", "centre = [0.2]", "centre needs 2 components"},
+       }) {
+    std::string slip = text;
+    slip.replace(slip.find(before), before.size(), after);
+    INFO(after << " -> " << complaint_about(slip));
+    CHECK(contains(complaint_about(slip), answer));
+  }
+}
+
+TEST_CASE("a disc may lie in a round tank, and not reach out of it", "[unit][case]") {
+  const std::string text = R"toml(format = 1
+[case]
+name = "drop"
+[time]
+end = 0.1
+[geometry.hull]
+type = "polyline"
+points = [[0.3, 0.0], [0.5, 0.1], [0.5, 0.4], [0.3, 0.5], [0.1, 0.4], [0.1, 0.1]]
+closed = true
+[[fluid]]
+velocity = ["0.1*sqrt(0.0397 - (x - 0.3)^2 - (y - 0.25)^2)", 0]
+region = { type = "ball", centre = [0.3, 0.25], radius = 0.199 }
+[mps]
+spacing = 0.02
+time_step = 0.002
+)toml";
+  CHECK(complaint_about(text).empty());
+  const std::string larger = complaint_about(text, {set_option("fluid.0.region.radius=0.23")});
+  CHECK(contains(larger, "the fluid reaches out of \"hull\""));
 }
 
 TEST_CASE("the plan of steps that adapt knows the fewest", "[unit][case]") {

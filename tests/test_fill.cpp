@@ -90,3 +90,51 @@ TEST_CASE("jitter is refused where particles are spread", "[unit][fill]") {
   CHECK_THROWS_WITH(scene_of("hydrostatic/turned.toml", jitter), Catch::Contains("is lost in \"tank\""));
   CHECK_NOTHROW(flat({"fluid.0.region={type=\"inside\", wall=\"tank\", level=0.2}", "fluid.0.jitter=0.1"}));
 }
+
+TEST_CASE("a ball has as many particles as its volume has room for, symmetric about its centre", "[unit][fill]") {
+  for (const bool is_deep : {false, true}) {
+    const int dim = is_deep ? 3 : 2;
+    const double pi = std::acos(-1), radius = 0.15, cells = radius / l0;
+    const Point centre = is_deep ? Point{0.5, 0.25, 0.25} : Point{0.25, 0.25, 0};
+    const Scene scene = is_deep ? deep({"fluid.0.region={type=\"ball\", centre=[0.5, 0.25, 0.25], radius=0.15}"})
+                                : flat({"fluid.0.region={type=\"ball\", centre=[0.25, 0.25], radius=0.15}"});
+    const auto points = fill(scene);
+    const double room = is_deep ? 4.0 / 3 * pi * cells * cells * cells : pi * cells * cells;
+    CHECK(static_cast<double>(points.size()) == Approx(room).epsilon(0.04));
+    std::set<std::array<long, 3>> found;  // in half cells from the centre
+    for (const Point& x : points) {
+      std::array<long, 3> at{};
+      double r2 = 0;
+      for (int d = 0; d < dim; ++d) {
+        const double half_cells = (x[d] - centre[d]) / (l0 / 2);
+        at[d] = std::lround(half_cells);
+        CHECK(half_cells == Approx(at[d]));
+        CHECK(at[d] % 2 != 0);
+        r2 += (x[d] - centre[d]) * (x[d] - centre[d]);
+      }
+      CHECK(r2 < radius * radius);
+      found.insert(at);
+    }
+    CHECK(found.size() == points.size());
+    for (const auto& [i, j, k] : found) {
+      CHECK(found.count({-i, j, k}) == 1);
+      CHECK(found.count({j, i, k}) == 1);
+      CHECK(found.count({i, j, -k}) == 1);
+    }
+  }
+}
+
+TEST_CASE("a ball that is shaken stays a ball", "[unit][fill]") {
+  const auto points =
+      fill(flat({"fluid.0.region={type=\"ball\", centre=[0.1, 0.1], radius=0.1}", "fluid.0.jitter=0.4"}));
+  CHECK(points.size() == 80);
+  for (const Point& x : points) CHECK(std::hypot(x[0] - 0.1, x[1] - 0.1) < 0.1);
+}
+
+TEST_CASE("a ball runs", "[unit][fill]") {
+  Simulation simulation(
+      flat({"fluid.0.region={type=\"ball\", centre=[0.25, 0.3], radius=0.1}", "fluid.0.velocity=[1, 0]"}));
+  CHECK(simulation.fluid().particles.count == 80);
+  for (int k = 0; k < 3; ++k) simulation.step();
+  CHECK(centroid_of(simulation)[0] == Approx(0.25 + 3 * simulation.dt()));
+}
