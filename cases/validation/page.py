@@ -26,13 +26,18 @@ def origin(manifest, command):
 
 
 def draw_picture(path, draw, runs):
-    """A small picture: `draw` of the case gets the figure and the runs by scheme."""
+    """A small picture, of 64 colours: `draw` of the case gets the figure and the runs by scheme."""
+    import io
+
     import matplotlib
+    from PIL import Image  # comes with matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
     figure = plt.figure(figsize=(7.2, 3.6), layout="constrained")
     draw(figure, runs)
-    figure.savefig(path, dpi=80)
+    drawn = io.BytesIO()
+    figure.savefig(drawn, dpi=80)
     plt.close(figure)
+    Image.open(drawn).convert("RGB").quantize(64).save(path, optimize=True)
