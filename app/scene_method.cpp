@@ -89,7 +89,7 @@ void set_radii(MpsCase& options, double radius) {
 }
 
 void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
-  constexpr double least_radius = 2;  // x spacing: a second row tells where the surface is
+  constexpr double least_radius = 2.05;  // x spacing: a second row tells where the surface is
   refuse_keys(mps, classic_keys, "classic", "delete it, or take that scheme");
   options.kernel = "standard";
   const double usual = dimension == 3 ? usual_radius_3d : options.radius_laplacian;

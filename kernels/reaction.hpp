@@ -1,6 +1,8 @@
 #pragma once
 // The force of the fluid on a wall that does the same work on the wall as the wall does on the fluid.
 
+#include <array>
+
 #include "kernels/survey.hpp"
 
 namespace greenwater {

@@ -144,7 +144,6 @@ struct Surveyor {
   LatticeTable table;
   Survey out;
   real n0, l0, touching, K, per_dt, drift, step, longest, g[3];
-  int count;
 
   KOKKOS_INLINE_FUNCTION Sums<Dim> sums(int i) const {
     Sums<Dim> sum;
@@ -228,7 +227,7 @@ struct Surveyor {
     const Pack there = s * m;
     M = sum.M;
     M.add_square(there, normal);
-    auto C_p = correction_of(M);
+    const auto C_p = correction_of(M);
     for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k)
       store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
     for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
@@ -271,8 +270,7 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
                          rho * (options.drift_speed / l0) * (options.drift_speed / l0),
                          options.shift_rate * table.shift,
                          options.shift_limit * l0,
-                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]},
-                         p.count};
+                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}};
   Kokkos::parallel_for(
       "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
 }

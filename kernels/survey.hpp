@@ -29,7 +29,7 @@ struct LatticeTable {
   real shift;       // way per gradient of the shift function that undoes the stiffest disorder [m^2]
   int few;          // neighbours of a particle of spray
 };
-/// Throws CaseError when the radius is less than 2 l0.
+/// For radii above 2 l0, so that there is a second row.
 LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
 
 /// What is known of every particle after a survey; fields like those of the particles.

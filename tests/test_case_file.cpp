@@ -410,7 +410,7 @@ TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
       {"name = \"load\"", "name = \"front\"", "two probes have the name"},
       {"wall = \"plate\"", "wall = \"plat\"", "did you mean \"plate\"?"},
       {"kind = \"wall_force\"", "kind = \"surface_height\"", "missing key \"x\" [m]"},
-      {"spacing = 0.02", "spacing = 0.02\nradius = 1.9", "must be at least 2"},
+      {"spacing = 0.02", "spacing = 0.02\nradius = 1.9", "must be at least 2.05"},
       {"spacing = 0.02", "spacing = 0.02\nscheme = \"classic\"\nradius_density = 1.0", "must be at least 1.1"},
       {"spacing = 0.02", "spacing = 0.02\nradius_density = 2.5", "radius_density belongs to scheme = \"classic\""},
       {"spacing = 0.02", "spacing = 0.02\nmultiplication_coefficient = 1.05", "delete it, or take that scheme"},
