@@ -40,9 +40,15 @@ def angular_momentum(frame):
     return (frame.x[:, 0] * frame.u[:, 1] - frame.x[:, 1] * frame.u[:, 0]).sum()
 
 
-def distance_to_water(points, x):
-    """From each point to the particle next to it."""
-    return numpy.array([math.sqrt(((x - point) ** 2).sum(axis=1).min()) for point in points])
+def distance_to_water(points, x, reach):
+    """From each point to the particle next to it; never more than the reach. Points of one column share their search."""
+    distance = numpy.empty(len(points))
+    for column in numpy.unique(points[:, 0]):
+        ours = points[:, 0] == column
+        near_by = x[numpy.abs(x[:, 0] - column) < reach]
+        apart = points[ours][:, None, :] - near_by[None, :, :]
+        distance[ours] = numpy.sqrt((apart**2).sum(axis=2).min(axis=1, initial=reach**2))
+    return distance
 
 
 def grid_about(centre, half, step):
@@ -54,12 +60,13 @@ def largest_void(frame, spacing, radius=0.3):
     """Radius of the largest empty circle with its centre in the middle of the patch, in spacings: the best of a coarse
     grid, then of fine ones round the best few."""
     middle = frame.x.mean(axis=0)
-    x = frame.x[((frame.x - middle) ** 2).sum(axis=1) < (radius + 3 * spacing) ** 2]
+    reach = 4 * spacing
+    x = frame.x[((frame.x - middle) ** 2).sum(axis=1) < (radius + reach) ** 2]
     points = grid_about(middle, radius, spacing / 3)
     points = points[((points - middle) ** 2).sum(axis=1) < radius**2]
-    distance = distance_to_water(points, x)
+    distance = distance_to_water(points, x, reach)
     best = points[numpy.argsort(distance)[-10:]]
-    fine = (distance_to_water(grid_about(point, spacing / 4, spacing / 24), x).max() for point in best)
+    fine = [distance_to_water(grid_about(point, spacing / 4, spacing / 24), x, reach).max() for point in best]
     return max(distance.max(), *fine) / spacing
 
 
