@@ -1,8 +1,5 @@
 #include "kernels/survey.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "core/region.hpp"
 #include "kernels/small_matrix.hpp"
 
@@ -55,71 +52,6 @@ KOKKOS_INLINE_FUNCTION V missing_of(const LatticeTable& table, const V& tilt) {
   const real m0 = table.missing[0], m1 = table.missing[1], m2 = table.missing[2];
   const V upper = m1 + (tilt - t1) * ((m0 - m1) / (t0 - t1)), lower = m2 + (tilt - t2) * ((m1 - m2) / (t1 - t2));
   return smaller(select(tilt > t1, upper, lower), all_lanes<V>(m0));
-}
-
-// The function that shifts: W = (1 - q)^4 (1 + 4 q), q = r / r_e, and W'/r times -1, with more of it for those that are
-// close, so that they do not pair: factor 1 + 0.2 (W / W(l0))^4.
-struct ShiftFunction {
-  real per_radius, per_spacing;  // 1 / r_e, 1 / W(l0)
-
-  KOKKOS_INLINE_FUNCTION static real value(real q) {
-    return q < 1 ? (1 - q) * (1 - q) * (1 - q) * (1 - q) * (1 + 4 * q) : 0;
-  }
-
-  template <class V>
-  KOKKOS_INLINE_FUNCTION V slope(const V& r) const {
-    const V q = r * per_radius, t = larger(1 - q, V{}), t3 = t * t * t;
-    V close = t * t3 * (1 + 4 * q) * per_spacing;
-    close *= close;
-    close *= close;
-    return 20 * t3 * per_radius * per_radius * (1 + real(0.2) * close);
-  }
-};
-
-ShiftFunction shift_function(const Weight& w, real l0) {
-  return {1 / w.radius, 1 / ShiftFunction::value(l0 / w.radius)};
-}
-
-// Of a symmetric matrix, by size; by powers of it.
-double largest_eigenvalue(const double (&A)[3][3]) {
-  double v[3] = {1, 0.7, 0.4}, length = 0;
-  for (int power = 0; power < 50; ++power) {
-    double next[3] = {};
-    for (int d = 0; d < 3; ++d)
-      for (int e = 0; e < 3; ++e) next[d] += A[d][e] * v[e];
-    length = std::hypot(next[0], next[1], next[2]);
-    if (length == 0) return 0;
-    for (int d = 0; d < 3; ++d) v[d] = next[d] / length;
-  }
-  return length;
-}
-
-// Largest eigenvalue of the gradient that shifts, for small waves of disorder on the lattice [1/m^2].
-double shift_stiffness(const Weight& weight, int dim, double l0) {
-  const ShiftFunction shift = shift_function(weight, static_cast<real>(l0));
-  const int reach = static_cast<int>(std::ceil(weight.radius / l0)), across = dim == 3 ? reach : 0;
-  constexpr int waves = 8;
-  constexpr double pi = 3.14159265358979323846;
-  double stiffest = 0;
-  for (int a = 0; a <= waves; ++a)
-    for (int b = 0; b <= a; ++b)
-      for (int c = 0; c <= (dim == 3 ? b : 0); ++c) {
-        double A[3][3] = {};
-        for (int kx = -reach; kx <= reach; ++kx)
-          for (int ky = -reach; ky <= reach; ++ky)
-            for (int kz = -across; kz <= across; ++kz) {
-              const double x[3] = {l0 * kx, l0 * ky, l0 * kz};
-              const double r = std::hypot(x[0], x[1], x[2]), step = 1e-4 * l0;
-              if (r == 0 || r >= weight.radius) continue;
-              const double slope = shift.slope(r),
-                           change = (shift.slope(r + step) - shift.slope(r - step)) / (2 * step);
-              const double wave = 1 - std::cos(pi / waves * (a * kx + b * ky + c * kz));
-              for (int d = 0; d < dim; ++d)
-                for (int e = 0; e < dim; ++e) A[d][e] += wave * ((d == e ? slope : 0) + change / r * x[d] * x[e]);
-            }
-        stiffest = std::max(stiffest, largest_eigenvalue(A));
-      }
-  return stiffest;
 }
 
 template <int Dim>
@@ -292,41 +224,6 @@ void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
 }
 
 }  // namespace
-
-LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing) {
-  const int reach = static_cast<int>(std::ceil(weight.radius / spacing));
-  const int across = dim == 3 ? reach : 0;
-  double n0 = 0, n[3] = {}, S[3] = {};
-  int near = 0;
-  for (int ky = -reach; ky <= reach; ++ky)
-    for (int kx = -reach; kx <= reach; ++kx)
-      for (int kz = -across; kz <= across; ++kz) {
-        const double r = std::sqrt(static_cast<double>(kx * kx + ky * ky + kz * kz));
-        if (r == 0) continue;
-        const double w = weight(static_cast<real>(r * spacing));
-        near += w > 0;
-        n0 += w;
-        for (int row = 0; row < 3; ++row) {
-          if (ky > row) continue;
-          n[row] += w;
-          S[row] -= w * ky;
-        }
-      }
-  LatticeTable table{};
-  for (int row = 0; row < 3; ++row) {
-    table.missing[row] = static_cast<real>(1 - n[row] / n0);
-    table.tilt[row] = static_cast<real>(S[row] / n[row]);
-  }
-  const double m = table.missing[0];
-  // The second row is at the surface where its view is clearly one-sided; with a small radius it is not.
-  const bool second = table.tilt[1] > table.tilt[0] / 5;
-  table.full = second ? real(0.9) * table.tilt[1] : real(0.5) * table.tilt[0];
-  table.none = table.full / 2;
-  table.bulge = static_cast<real>((S[0] / n0 / 0.5 / m - 1) / m);
-  table.shift = static_cast<real>(1 / shift_stiffness(weight, dim, spacing));
-  table.few = near / 3;
-  return table;
-}
 
 void survey(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& found) {
   Region region("survey");

@@ -9,6 +9,7 @@
 // over neighbours and images.
 
 #include "kernels/fluid.hpp"
+#include "kernels/lattice_table.hpp"
 
 namespace greenwater {
 
@@ -19,18 +20,6 @@ struct SurveyOptions {
   bool loads = false;            // keeps what wall_reaction() needs
   real shift_limit = real(0.1);  // longest shift, x spacing
 };
-
-/// What the lattice tells; found once.
-struct LatticeTable {
-  real missing[3];  // 1 - n / n^0 of the first three rows under a flat surface, l0/2, 3 l0/2 and 5 l0/2 deep
-  real tilt[3];     // |S| n^0 / (n l0) of the same rows
-  real none, full;  // |S| n^0 / (n l0) at which a particle begins to be at the surface, and is
-  real bulge;       // b: |S| / (depth) = m (1 + b m) in the first row
-  real shift;       // way per gradient of the shift function that undoes the stiffest disorder [m^2]
-  int few;          // neighbours of a particle of spray
-};
-/// For radii above 2 l0, so that there is a second row.
-LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
 
 /// What is known of every particle after a survey; fields like those of the particles.
 struct Survey {
