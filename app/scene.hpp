@@ -123,9 +123,9 @@ struct PressureCase {
 
 struct DefaultSchemeCase {
   double reference_speed = 0;  // [m/s]; 0: sqrt(|g| H) or the fastest start, whichever is more
-  double drift = 0.5;          // x reference speed
-  double shifting = 7;         // part of disorder undone while the fastest particle goes one spacing
-  double smoothing = 0.2;      // rate x spacing / reference speed
+  double drift = 0.3;          // x reference speed
+  double shifting = 7;         // part of disorder undone while the bulk of the fluid goes one spacing
+  double smoothing = 0.4;      // rate x spacing / reference speed
   double surface_smoothing = 0.6;
   double separation = 0.6;  // x spacing
 };

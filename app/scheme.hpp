@@ -42,7 +42,7 @@ std::unique_ptr<Scheme> make_classic(const ClassicOptions& options);
 struct DefaultOptions {
   SolverOptions solver;
   real reference_speed = 0;  // U of the flow [m/s]: that of its energy, not of a splash; 0: its bulk's in each step
-  real drift = real(0.5);    // speed with which density errors are undone, x U
+  real drift = real(0.3);    // speed with which density errors are undone, x U
   real shifting = 7;         // part of disorder that is undone while the fluid goes l0 ...
   real most_shifting = real(1.5);  // ... and in one step at most
   SmoothingOptions smoothing;      // its speed is set to U

@@ -43,8 +43,21 @@ struct Smoother {
   }
 };
 
+// The disorder of a pack of particles less its mean over the neighbours, so that shifting does not see long waves: a
+// lattice that the flow bends would be bent back like an elastic body, and that feeds waves.
 template <int Dim>
-void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates, const VectorField& a) {
+struct Straightener {
+  Read<VectorField> disorder;
+  Vec<Dim, Pack> mean{};
+
+  KOKKOS_INLINE_FUNCTION void add(const IndexPack& j, const Pack& weight) {
+    mean = along(mean, weight, gather_pack<Dim>(disorder, j));
+  }
+  KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> shift(int i) const { return difference(load_pack<Dim>(disorder, i), mean); }
+};
+
+template <int Dim>
+void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const VectorField& a) {
   const auto w = fluid.gradient.weight;
   const auto near = around_unmoved<Dim>(fluid, w);
   const auto x = Read<CoordField>(fluid.particles.position);
@@ -54,6 +67,9 @@ void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates,
   const real touching = static_cast<real>(1e-12 * fluid.spacing * fluid.spacing);
   const auto correction = Read<VectorField>(survey.correction), surface_point = Read<VectorField>(survey.surface_point);
   const bool smooths = rates.inside > 0 || rates.at_surface > 0;
+  const bool shifts = survey.shift.extent(0) > 0;
+  const auto shift = survey.shift;
+  const Straightener<Dim> crooked{survey.disorder, {}};
   const Smoother<Dim> idle{fluid.particles.velocity, survey.velocity_gradient, survey.surface, rates, {}, {}, {}, {}};
   Kokkos::parallel_for(
       "greenwater::accelerate", packs(fluid.particles.count), KOKKOS_LAMBDA(const int pack) {
@@ -61,6 +77,7 @@ void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates,
         const Pack pi = load_pack(p, i);
         auto smoother = idle;
         if (smooths) smoother.start(i);
+        auto straightener = crooked;
         Vec<Dim, Pack> sum{};
         near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
@@ -68,6 +85,7 @@ void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates,
           const Pack slope = (gather_pack(p, j) - pi) * weight * inverse(larger(r2, all_lanes<Pack>(touching)));
           sum = along(sum, slope, r);
           if (smooths) smoother.add(j, r, weight);
+          if (shifts) straightener.add(j, weight);
         });
         near.for_each_image(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
@@ -78,13 +96,14 @@ void accelerate_in(const Fluid& fluid, const Survey& survey, const Rates& rates,
         sum = along(sum, -pi, load_pack<Dim>(surface_point, i));
         Symmetric<Dim, Pack> C;
         for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) C.c[k] = load_lanes<Pack>(&correction(i, k));
+        if (shifts) store_pack(shift, i, straightener.shift(i));
         store_pack(a, i, along(smoother.sum, all_lanes<Pack>(-1 / rho), product(C, sum)));
       });
 }
 
 }  // namespace
 
-void accelerate(Fluid& fluid, const Survey& survey, const SmoothingOptions& smoothing, real dt) {
+void accelerate(Fluid& fluid, Survey& survey, const SmoothingOptions& smoothing, real dt) {
   Region region("gradient");
   const Rates rates = rates_of(smoothing, static_cast<real>(fluid.spacing), dt);
   const VectorField a = fluid.particles.acceleration;

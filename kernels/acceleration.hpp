@@ -9,7 +9,7 @@ namespace greenwater {
 /// coefficient times speed / l0.
 struct SmoothingOptions {
   real speed = 0;               // of the flow [m/s]; 0 smooths nothing
-  real inside = real(0.2);      // coefficient [-]
+  real inside = real(0.4);      // coefficient [-]
   real at_surface = real(0.6);  // added to it at the surface, where the geometry of the few makes noise [-]
   real most = real(0.2);        // of a difference, in one step [-]
 };
@@ -25,6 +25,9 @@ struct SmoothingOptions {
 ///
 /// over neighbours, not images. What is in brackets is 0 in every quadratic flow, also at the surface: it is particles'
 /// disorder. Each pair keeps its momentum.
-void accelerate(Fluid& fluid, const Survey& survey, const SmoothingOptions& smoothing, real dt);
+///
+/// The same pass makes survey.shift, where there is one: disorder_i - (1 / n^0) sum w disorder_j, over neighbours. Only
+/// what is short is shifted: long waves in the lattice are the flow's, and to undo them would feed waves.
+void accelerate(Fluid& fluid, Survey& survey, const SmoothingOptions& smoothing, real dt);
 
 }  // namespace greenwater

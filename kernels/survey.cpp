@@ -164,14 +164,14 @@ struct Surveyor {
       store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
     for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
 
-    if (out.shift.extent(0) == 0) return;
+    if (out.disorder.extent(0) == 0) return;
     auto shift = along(Vec<Dim, Pack>{}, all_lanes<Pack>(-step), sum.crowd);
     shift = along(shift, -s * dot(shift, normal), normal);  // along the surface, not through it
     const Pack length2 = dot(shift, shift), longest2 = all_lanes<Pack>(longest * longest);
     Pack part =
         select(length2 > longest2, longest * inverse(sqrt(larger(length2, longest2))), all_lanes<Pack>(real(1)));
     part = select(seen < static_cast<real>(table.few), Pack{}, part);
-    for (int d = 0; d < Dim; ++d) store_lanes(&out.shift(i, d), part * shift[d]);
+    for (int d = 0; d < Dim; ++d) store_lanes(&out.disorder(i, d), part * shift[d]);
   }
 };
 
@@ -220,7 +220,9 @@ void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
         uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
   out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
   out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
-  if (options.shifts) out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
+  if (!options.shifts) return;
+  out.disorder = uncleared<VectorField>("greenwater::survey_disorder", room, p.dim);
+  out.shift = uncleared<VectorField>("greenwater::survey_shift", room, p.dim);
 }
 
 }  // namespace

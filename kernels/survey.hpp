@@ -30,7 +30,9 @@ struct Survey {
   VectorField divergence_correction;  // (i, place) M^-1 as the divergence had it; empty unless loads are asked for
   VectorField surface_point;          // v: the surface's part of the gradient is -p_i v [1/m]
   VectorField velocity_gradient;      // (i, d Dim + e) du_d / dx_e [1/s]
-  VectorField shift;  // by which the particle is moved beside its own way [m]; empty when nothing shifts
+  VectorField disorder;  // the way out of the disorder that the particle sees [m]; empty when nothing shifts
+  VectorField
+      shift;  // by which it is moved beside its own way [m]: the accelerate() after the survey makes it of disorder
 };
 
 /// Surveys all particles with u* in particles.velocity (without gravity) and makes the rows of the pressure:
