@@ -14,35 +14,6 @@ namespace {
 
 constexpr int vtk_axes = 3;
 
-/// Real values in float32, vectors with the missing components as 0.
-std::vector<float> padded(const Column& column, std::size_t rows) {
-  const auto components = static_cast<std::size_t>(column.components);
-  const std::size_t width = components > 1 ? static_cast<std::size_t>(vtk_axes) : 1;
-  std::vector<float> out(rows * width, 0.0F);
-  std::visit(
-      [&](const auto& values) {
-        expect(values.size() == rows * components);
-        for (std::size_t i = 0; i < rows; ++i) {
-          for (std::size_t d = 0; d < components; ++d) {
-            out[i * width + d] = static_cast<float>(values[i * components + d]);
-          }
-        }
-      },
-      column.values);
-  return out;
-}
-
-void add_point_data(Vtp& vtp, const Column& column, std::size_t rows) {
-  if (const auto* whole = std::get_if<std::vector<std::int64_t>>(&column.values)) {
-    vtp.add(Vtp::Section::point_data, column.name, "Int64", column.components, *whole);
-  } else if (const auto* flags = std::get_if<std::vector<std::uint8_t>>(&column.values)) {
-    vtp.add(Vtp::Section::point_data, column.name, "UInt8", column.components, *flags);
-  } else {
-    const int width = column.components > 1 ? vtk_axes : 1;
-    vtp.add(Vtp::Section::point_data, column.name, "Float32", width, padded(column, rows));
-  }
-}
-
 std::vector<std::int32_t> counting(std::size_t count, std::int32_t first) {
   std::vector<std::int32_t> numbers(count);
   std::iota(numbers.begin(), numbers.end(), first);
@@ -51,16 +22,16 @@ std::vector<std::int32_t> counting(std::size_t count, std::int32_t first) {
 
 std::string particles(const Table& table) {
   Vtp vtp({.points = table.rows, .verts = table.rows});
-  vtp.add(Vtp::Section::field_data, "TimeValue", "Float64", 1, std::vector<double>{table.time});
+  vtp.add_time(table.time);
   for (const Column& column : table.columns) {
     if (column.name == "position") {
-      vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, padded(column, table.rows));
+      vtp.add(Vtp::Section::points, "Points", column);
     } else {
-      add_point_data(vtp, column, table.rows);
+      vtp.add(Vtp::Section::point_data, column.name, column);
     }
   }
-  vtp.add(Vtp::Section::verts, "connectivity", "Int32", 1, counting(table.rows, 0));
-  vtp.add(Vtp::Section::verts, "offsets", "Int32", 1, counting(table.rows, 1));
+  vtp.add(Vtp::Section::verts, "connectivity", 1, counting(table.rows, 0));
+  vtp.add(Vtp::Section::verts, "offsets", 1, counting(table.rows, 1));
   return vtp.text();
 }
 
@@ -73,8 +44,8 @@ struct Cells {
     offsets.push_back(static_cast<std::int32_t>(connectivity.size()));
   }
   void write(Vtp& vtp, Vtp::Section section) const {
-    vtp.add(section, "connectivity", "Int32", 1, connectivity);
-    vtp.add(section, "offsets", "Int32", 1, offsets);
+    vtp.add(section, "connectivity", 1, connectivity);
+    vtp.add(section, "offsets", 1, offsets);
   }
 };
 
@@ -90,8 +61,8 @@ std::string shapes(const std::vector<WallShape>& walls, std::optional<double> ti
     }
   }
   Vtp vtp({.points = points.size() / vtk_axes, .lines = lines.offsets.size(), .polys = polys.offsets.size()});
-  if (time) vtp.add(Vtp::Section::field_data, "TimeValue", "Float64", 1, std::vector<double>{*time});
-  vtp.add(Vtp::Section::points, "Points", "Float32", vtk_axes, points);
+  if (time) vtp.add_time(*time);
+  vtp.add(Vtp::Section::points, "Points", vtk_axes, points);
   lines.write(vtp, Vtp::Section::lines);
   polys.write(vtp, Vtp::Section::polys);
   return vtp.text();
@@ -105,17 +76,23 @@ Paraview::Paraview(const std::filesystem::path& folder, const std::string& name)
 
 void Paraview::write(const Table& table) {
   require_room(folder_, vtp_bytes(table));
-  add(table.time, particles(table));
+  add(table.time, "vtp", particles(table));
 }
 
 void Paraview::write(double time, const std::vector<WallShape>& walls) {
   const std::string text = shapes(walls, time);
   require_room(folder_, static_cast<double>(text.size()));
-  add(time, text);
+  add(time, "vtp", text);
 }
 
-void Paraview::add(double time, const std::string& text) {
-  const std::string file = fmt::format("{0}/{0}_{1:06d}.vtp", name_, frames_);
+void Paraview::write(const SolidMesh& mesh, const SolidFrame& frame) {
+  const std::string text = vtu_text(mesh, frame);
+  require_room(folder_, static_cast<double>(text.size()));
+  add(frame.time, "vtu", text);
+}
+
+void Paraview::add(double time, const char* format, const std::string& text) {
+  const std::string file = fmt::format("{0}/{0}_{1:06d}.{2}", name_, frames_, format);
   write_atomically(folder_ / file, text);
   entries_ += fmt::format("<DataSet timestep=\"{:.9g}\" part=\"0\" file=\"{}\"/>\n", time, file);
   write_atomically(folder_ / (name_ + ".pvd"),

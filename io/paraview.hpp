@@ -1,6 +1,6 @@
 #pragma once
-// Frames for ParaView 5.11 and later: one .vtp per frame (binary, 32-bit), and a .pvd that gives them their times. The
-// .pvd is replaced after each frame, so that ParaView can follow a run.
+// Frames for ParaView 5.11 and later: one .vtp, or .vtu of a solid, per frame (binary, 32-bit), and a .pvd that gives
+// them their times. The .pvd is replaced after each frame, so that ParaView can follow a run.
 
 #include <filesystem>
 #include <string>
@@ -8,12 +8,13 @@
 
 #include "core/table.hpp"
 #include "core/wall_shape.hpp"
+#include "io/vtu.hpp"
 
 namespace greenwater {
 
 class Paraview {
  public:
-  /// Frames of one body, or of the walls, go to `folder`/`name`/`name`_000000.vtp and `folder`/`name`.pvd. Throws
+  /// Frames of one body, or of the walls, go to `folder`/`name`/`name`_000000.vtp (.vtu) and `folder`/`name`.pvd. Throws
   /// FileError.
   Paraview(const std::filesystem::path& folder, const std::string& name);
 
@@ -24,8 +25,11 @@ class Paraview {
   /// Writes the walls as they are at `time` [s], as write_walls() does. For walls that move. Throws FileError.
   void write(double time, const std::vector<WallShape>& walls);
 
+  /// Writes the elements where their nodes are, as vtu_text() does. Throws FileError.
+  void write(const SolidMesh& mesh, const SolidFrame& frame);
+
  private:
-  void add(double time, const std::string& text);
+  void add(double time, const char* format, const std::string& text);
 
   std::filesystem::path folder_;
   std::string name_;

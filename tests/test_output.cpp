@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstring>
 #include <map>
 
 #include "core/check.hpp"
@@ -15,6 +14,7 @@
 #include "io/results.hpp"
 #include "tests/catch.hpp"
 #include "tests/program.hpp"
+#include "tests/vtk_file.hpp"
 
 using namespace greenwater;
 using namespace greenwater::test;
@@ -95,58 +95,6 @@ std::vector<double> matrix(hid_t parent, const char* name, hsize_t& columns) {
   REQUIRE(H5Dread(data.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0);
   return values;
 }
-
-/// The text between the two quotes behind the next `key`.
-std::string quoted(const std::string& text, const std::string& key, std::size_t from = 0) {
-  const std::size_t start = text.find('"', text.find(key, from)) + 1;
-  return text.substr(start, text.find('"', start) - start);
-}
-
-/// A .vtp as a reader would take it apart: the counts of its piece, and the bytes of each array by section and name.
-struct VtpFile {
-  std::map<std::string, int> counts;
-  std::map<std::string, std::string> arrays;
-
-  explicit VtpFile(const std::filesystem::path& path) {
-    const std::string text = text_in(path);
-    const std::string appended = "<AppendedData encoding=\"raw\">\n_", end = "\n</AppendedData>\n</VTKFile>\n";
-    const std::size_t start = text.find(appended);
-    REQUIRE(start != std::string::npos);
-    REQUIRE(text.substr(text.size() - end.size()) == end);
-    const std::string head = text.substr(0, start);
-    const std::size_t first = start + appended.size();
-    const std::string data = text.substr(first, text.size() - end.size() - first);
-    for (const std::string what : {"Points", "Verts", "Lines", "Strips", "Polys"}) {
-      counts[what] = std::stoi(quoted(head, "NumberOf" + what));
-    }
-    std::size_t read = 0;
-    for (const std::string section : {"FieldData", "PointData", "Points", "Verts", "Lines", "Polys"}) {
-      const std::size_t open = head.find('<' + section + '>'), close = head.find("</" + section + '>');
-      REQUIRE(open < close);
-      for (std::size_t at = head.find("<DataArray", open); at < close; at = head.find("<DataArray", at + 1)) {
-        const std::size_t offset = std::stoul(quoted(head, "offset=", at));
-        std::uint64_t length = 0;
-        REQUIRE(offset + sizeof length <= data.size());
-        std::memcpy(&length, data.data() + offset, sizeof length);
-        REQUIRE(offset + sizeof length + length <= data.size());
-        arrays[section + '/' + quoted(head, "Name=", at)] = data.substr(offset + sizeof length, length);
-        read += sizeof length + length;
-      }
-    }
-    CHECK(read == data.size());  // nothing between the arrays, or read twice
-  }
-
-  template <class T>
-  std::vector<T> values(const std::string& name) const {
-    const std::string& bytes = arrays.at(name);
-    std::vector<T> numbers(bytes.size() / sizeof(T));
-    if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), bytes.size());
-    return numbers;
-  }
-};
-
-using Ints = std::vector<std::int32_t>;
-using Floats = std::vector<float>;
 
 /// A floor of a 3-D tank, a triangle, and between them a line as of a 2-D scene; all moved to the right by x.
 std::vector<WallShape> three_walls(double x) {
@@ -267,7 +215,7 @@ TEST_CASE("a .vtp has the arrays where it says", "[unit][output]") {
   for (const std::size_t dim : {std::size_t{2}, std::size_t{3}}) {
     Paraview paraview(folder.path(), "water");
     for (std::int64_t step = 0; step < 3; ++step) paraview.write(table_of(7, step, dim));
-    const VtpFile vtp(folder / "water/water_000002.vtp");
+    const VtkFile vtp(folder / "water/water_000002.vtp");
     CHECK(vtp.counts ==
           std::map<std::string, int>{{"Points", 7}, {"Verts", 7}, {"Lines", 0}, {"Strips", 0}, {"Polys", 0}});
     CHECK(vtp.arrays.size() == 7);
@@ -290,7 +238,7 @@ TEST_CASE("a .vtp has the arrays where it says", "[unit][output]") {
 TEST_CASE("walls are lines and polygons", "[unit][output]") {
   const TemporaryFolder folder;
   write_walls(folder / "walls.vtp", three_walls(0));
-  const VtpFile vtp(folder / "walls.vtp");
+  const VtkFile vtp(folder / "walls.vtp");
   CHECK(vtp.counts ==
         std::map<std::string, int>{{"Points", 9}, {"Verts", 0}, {"Lines", 1}, {"Strips", 0}, {"Polys", 2}});
   CHECK(vtp.values<std::int32_t>("Lines/connectivity") == Ints{4, 5});
@@ -302,7 +250,7 @@ TEST_CASE("walls are lines and polygons", "[unit][output]") {
   CHECK(vtp.arrays.count("FieldData/TimeValue") == 0);
 
   write_walls(folder / "flat.vtp", {{{0, 0, 0}, {1, 0, 0}}, {{1, 0, 0}, {1, 2, 0}}});
-  const VtpFile flat(folder / "flat.vtp");
+  const VtkFile flat(folder / "flat.vtp");
   CHECK(flat.counts.at("Lines") == 2);
   CHECK(flat.counts.at("Polys") == 0);
   CHECK(flat.values<std::int32_t>("Lines/connectivity") == Ints{0, 1, 2, 3});
@@ -314,7 +262,7 @@ TEST_CASE("walls that move have frames with times", "[unit][output]") {
   Paraview moving(folder.path(), "walls");
   moving.write(0, three_walls(0));
   moving.write(0.25, three_walls(0.5));
-  const VtpFile vtp(folder / "walls/walls_000001.vtp");
+  const VtkFile vtp(folder / "walls/walls_000001.vtp");
   CHECK(vtp.values<double>("FieldData/TimeValue") == std::vector<double>{0.25});
   CHECK(vtp.values<float>("Points/Points").at(0) == 0.5F);
   CHECK(vtp.values<std::int32_t>("Polys/offsets") == Ints{4, 7});
@@ -326,10 +274,10 @@ TEST_CASE("walls that move have frames with times", "[unit][output]") {
 TEST_CASE("no walls and empty tables are files too", "[unit][output]") {
   const TemporaryFolder folder;
   write_walls(folder / "none.vtp", {});
-  CHECK(VtpFile(folder / "none.vtp").counts.at("Points") == 0);
+  CHECK(VtkFile(folder / "none.vtp").counts.at("Points") == 0);
   Paraview paraview(folder.path(), "water");
   paraview.write(table_of(0, 0));
-  CHECK(VtpFile(folder / "water/water_000000.vtp").counts.at("Points") == 0);
+  CHECK(VtkFile(folder / "water/water_000000.vtp").counts.at("Points") == 0);
 }
 
 TEST_CASE("a .csv has one header, plain digits and is on disk at once", "[unit][output]") {
