@@ -1,12 +1,12 @@
 #include "io/number_file.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string>
 #include <string_view>
 
 #include "io/data_file.hpp"
+#include "io/number_text.hpp"
 
 namespace greenwater {
 namespace {
@@ -48,27 +48,19 @@ std::vector<Word> words_of(std::string_view line, int number) {
   return words;
 }
 
-enum class Kind { number, too_large, none };
-
-Kind parse(std::string_view text, double& value) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size() || fault == std::errc::invalid_argument) return Kind::none;
-  return fault == std::errc() ? Kind::number : Kind::too_large;
-}
-
 bool is_header(const std::vector<Word>& words) {
   double value = 0;
-  return std::all_of(words.begin(), words.end(), [&](const Word& w) { return parse(w.text, value) == Kind::none; });
+  return std::all_of(words.begin(), words.end(),
+                     [&](const Word& w) { return parse_number(w.text, value) == NumberText::none; });
 }
 
 double number(const DataFile& file, const Word& word) {
   double value = 0;
-  const Kind kind = parse(word.text, value);
+  const NumberText kind = parse_number(word.text, value);
   if (word.text.empty()) refuse(file, word.spot, "a number is missing here; delete the comma or write the number");
-  require_at(file, word.spot, kind != Kind::none, '"', word.text,
+  require_at(file, word.spot, kind != NumberText::none, '"', word.text,
              "\" is not a number; write for example 0.25 or 2.5e-1, and comments behind a #");
-  require_at(file, word.spot, kind != Kind::too_large && std::isfinite(value), word.text,
+  require_at(file, word.spot, kind != NumberText::too_large && std::isfinite(value), word.text,
              " is not a finite number; correct it or delete the row");
   return value;
 }

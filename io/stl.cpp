@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
 
 #include "io/data_file.hpp"
+#include "io/number_text.hpp"
 
 namespace greenwater {
 namespace {
@@ -81,11 +81,6 @@ TriangleMesh read_binary(const DataFile& file) {
 
 // ---- text ----
 
-/// Of a number that fits into no double: too small, so that it is 0, not too large.
-bool is_tiny(std::string_view digits) {
-  return digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos;
-}
-
 /// The words of a text STL one after the other, each with its place.
 class StlText {
  public:
@@ -123,15 +118,12 @@ class StlText {
   }
   coord number(int triangle) {
     refuse_end(triangle);
-    std::string_view digits = word_;
-    if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
     coord value = 0;
-    const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    const bool is_number = end == digits.data() + digits.size() && fault != std::errc::invalid_argument;
-    require_at(file_, spot_, is_number, "triangle ", triangle, ": \"", word_.substr(0, 40),
+    const NumberText kind = parse_number(word_, value);
+    require_at(file_, spot_, kind != NumberText::none, "triangle ", triangle, ": \"", word_.substr(0, 40),
                "\" is not a number; a coordinate is written like 0.25 or 2.5e-1");
-    require_at(file_, spot_, usable(value) && (fault == std::errc() || is_tiny(digits)), "triangle ", triangle,
-               ": the coordinate ", word_, " is not a usable number; mend it in the program that wrote the file");
+    require_at(file_, spot_, usable(value) && kind == NumberText::number, "triangle ", triangle, ": the coordinate ",
+               word_, " is not a usable number; mend it in the program that wrote the file");
     next();
     return value;
   }

@@ -39,6 +39,7 @@ TEST_CASE("tables of numbers are read as people write them", "[unit][number_file
   CHECK(rows_of("\xEF\xBB\xBF"
                 "0,0.5\n1,-2e-3\n") == rows);
   CHECK(rows_of("7\n8\n", 1) == Rows{{7}, {8}});
+  CHECK(rows_of("1e-999,-1E-999\n") == Rows{{0, 0}});
 }
 
 TEST_CASE("faults in tables of numbers are told with file, line and column", "[unit][number_file]") {
