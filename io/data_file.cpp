@@ -35,7 +35,7 @@ DataFile read_data_file(const std::filesystem::path& path, const Place& place) {
   std::ifstream stream(path, std::ios::binary);
   file.text.resize(size);
   if (size > 0) stream.read(file.text.data(), static_cast<std::streamsize>(size));
-  require_at(place, stream.good(), file.name, " cannot be read; see who may read it (ls -l)");
+  require<FileError>(stream.good(), complaint(place, file.name + " cannot be read; see who may read it (ls -l)"));
   return file;
 }
 

@@ -15,7 +15,8 @@ struct DataFile {
   Place named_at;    ///< where the case names it
 };
 
-/// The whole file. Throws CaseError when there is none, or it is no file, too large (1 GB), or cannot be read.
+/// The whole file. Throws CaseError when there is none, or it is no file or too large (1 GB), and FileError
+/// when it cannot be read.
 DataFile read_data_file(const std::filesystem::path& path, const Place& place);
 
 /// A position in the file, both from 1 (a line of 0: the file as a whole), and how many characters to underline.
