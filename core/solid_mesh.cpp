@@ -71,6 +71,18 @@ const MeshPart* find_part(const SolidMesh& mesh, const std::string& name) {
   return found == mesh.parts.end() ? nullptr : &*found;
 }
 
+std::string part_names(const SolidMesh& mesh) {
+  std::string names;
+  for (const MeshPart& part : mesh.parts) names += (names.empty() ? "\"" : ", \"") + part.name + '"';
+  return names.empty() ? "none" : names;
+}
+
+void scale(SolidMesh& mesh, double by) {
+  for (auto& node : mesh.nodes) {
+    for (double& x : node) x *= by;
+  }
+}
+
 void add_part(SolidMesh& mesh, const std::string& name, std::vector<Facet> facets) {
   MeshPart part{name, {}, std::move(facets)};
   for (const Facet facet : part.facets) {

@@ -46,6 +46,12 @@ std::vector<Facet> outer_facets(const SolidMesh& mesh);
 /// The part of this name, or nullptr.
 const MeshPart* find_part(const SolidMesh& mesh, const std::string& name);
 
+/// The names of all parts for messages: `"foot", "tip"`, or `none`.
+std::string part_names(const SolidMesh& mesh);
+
+/// Every place times `by`.
+void scale(SolidMesh& mesh, double by);
+
 /// Adds a part made of these facets and their nodes.
 void add_part(SolidMesh& mesh, const std::string& name, std::vector<Facet> facets);
 
