@@ -1,19 +1,17 @@
 #include "io/gmsh_file.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <ostream>
+#include <cstdint>
+#include <cstdlib>
 #include <set>
 #include <string_view>
 #include <unordered_map>
 
-#include "io/number_text.hpp"
+#include "io/gmsh_lines.hpp"
 
 namespace greenwater {
 namespace {
 
-constexpr double largest_coordinate = 1e30;  // squares of it still fit into a double
-constexpr std::size_t longest_quote = 40;    // characters of a wrong word in a message
 constexpr std::size_t any_number = SIZE_MAX;
 
 // ---- kinds of elements ----
@@ -63,139 +61,6 @@ StrangeKind strange_kind(std::int64_t type) {
   }
   return {type, "of another kind", only_these};
 }
-
-// ---- lines ----
-
-/// What a line is for, in messages: `node tag 3 of 8`, or without a number `the line of counts in $Nodes`.
-struct Item {
-  const char* what;
-  std::int64_t number = 0, count = 0;
-};
-
-std::ostream& operator<<(std::ostream& out, const Item& item) {
-  out << item.what;
-  if (item.number > 0) out << ' ' << item.number << " of " << item.count;
-  return out;
-}
-
-/// The lines of the file that are not blank, one after the other, in words between blanks.
-class MshLines {
- public:
-  explicit MshLines(const DataFile& file) : file_(file) {}
-
-  /// To the next line; false at the end of the file, where it stays.
-  bool next() {
-    const std::string_view text = file_.text;
-    while (at_ < text.size()) {
-      const std::size_t end = std::min(text.find('\n', at_), text.size());
-      line_ = text.substr(at_, end - at_);
-      at_ = end + 1;
-      ++number_;
-      split();
-      if (!words_.empty()) return true;
-    }
-    return false;
-  }
-  /// To the next line, which is one of a section and has from `least` to `most` words.
-  void record(const Item& item, std::size_t least, std::size_t most) {
-    require_at(file_, {number_, 1, 1}, next(), "the file is cut short: it ends where ", item,
-               " should be; copy or save it again");
-    if (words_[0][0] == '$') {
-      refuse(file_, spot(0), item, " is missing: ", quote(0),
-             " comes too early, so a count above is wrong or lines are lost; save the mesh again");
-    }
-    if (words_.size() >= least && words_.size() <= most) return;
-    refuse_if_last();
-    refuse(file_, spot(words_.size() < least ? words_.size() - 1 : most), item, " needs ",
-           least < most ? "at least " : "", least, least == 1 ? " word" : " words", " in its line, found ",
-           words_.size(), "; a count above is wrong or the line is damaged: save the mesh again");
-  }
-  void record(const Item& item, std::size_t words) { record(item, words, words); }
-  /// To the next line, which ends the section.
-  void end_section(const std::string& section) {
-    const std::string wanted = "$End" + section.substr(1);
-    require_at(file_, {number_, 1, 1}, next(), "the file is cut short: ", wanted, " is missing; copy or save it again");
-    if (words_[0] == wanted) return;
-    refuse_if_last();
-    refuse(file_, spot(0), wanted, " is wanted here, found ", quote(0), ": ", section,
-           " has more lines than it announces; save the mesh again");
-  }
-  /// Past the end of a section that nobody reads.
-  void skip_section(const std::string& section) {
-    const std::string wanted = "$End" + section.substr(1);
-    const DataSpot begin = spot(0);
-    while (next()) {
-      if (words_[0] == wanted) return;
-    }
-    refuse(file_, begin, "the file is cut short: ", section, " has no ", wanted, "; copy or save it again");
-  }
-
-  std::string_view line() const { return line_; }
-  const std::vector<std::string_view>& words() const { return words_; }
-  int number() const { return number_; }
-  DataSpot spot(std::size_t word) const {
-    const std::string_view text = words_[word];
-    return {number_, static_cast<int>(text.data() - line_.data()) + 1, static_cast<int>(text.size())};
-  }
-  std::string quote(std::size_t word) const { return '"' + std::string(words_[word].substr(0, longest_quote)) + '"'; }
-
-  std::int64_t whole(std::size_t word, const char* what) const {
-    std::int64_t value = 0;
-    require_at(file_, spot(word), parse_number(words_[word], value) == NumberText::number, what,
-               " must be a whole number, found ", quote(word), "; save the mesh again");
-    return value;
-  }
-  std::int64_t whole_from(std::int64_t least, std::int64_t most, std::size_t word, const char* what) const {
-    const std::int64_t value = whole(word, what);
-    require_at(file_, spot(word), value >= least && value <= most, what, " must be from ", least, " to ", most,
-               ", found ", value, "; save the mesh again");
-    return value;
-  }
-  /// How many of something: whatever it is, it takes a byte.
-  std::int64_t count(std::size_t word, const char* what) const {
-    const std::int64_t value = whole(word, what);
-    require_at(file_, spot(word), value >= 0, what, " cannot be ", value, "; save the mesh again");
-    require_at(file_, spot(word), value <= static_cast<std::int64_t>(file_.text.size()), what, ", ", value,
-               ", is more than a file of ", file_.text.size(), " bytes can hold; copy or save it again");
-    return value;
-  }
-  double coordinate(std::size_t word) const {
-    double value = 0;
-    const NumberText kind = parse_number(words_[word], value);
-    require_at(file_, spot(word), kind != NumberText::none, quote(word),
-               " is not a number; a coordinate is written like 0.25 or 2.5e-1");
-    require_at(file_, spot(word), kind == NumberText::number && std::abs(value) <= largest_coordinate,
-               "the coordinate ", quote(word), " is not a usable number; mend it in the program that wrote the file");
-    return value;
-  }
-
- private:
-  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-  void split() {
-    words_.clear();
-    for (std::size_t at = 0; at < line_.size();) {
-      if (is_blank(line_[at])) {
-        ++at;
-        continue;
-      }
-      std::size_t end = at;
-      while (end < line_.size() && !is_blank(line_[end])) ++end;
-      words_.push_back(line_.substr(at, end - at));
-      at = end;
-    }
-  }
-  /// Throws: the last line of the file is not what it should be because there is no more of it.
-  void refuse_if_last() const {
-    require_at(file_, spot(words_.size() - 1), at_ <= file_.text.size(),
-               "the file is cut short: it ends within this line; copy or save it again");
-  }
-
-  const DataFile& file_;
-  std::size_t at_ = 0;  // where the next line begins; beyond the end of the text when the last one has no newline
-  int number_ = 0;
-  std::string_view line_;
-  std::vector<std::string_view> words_;
-};
 
 // ---- sections ----
 
@@ -296,7 +161,7 @@ class MshParser {
 
   /// A point: tag, place, groups. Anything else: tag, two corners of its box, groups, entities that bound it. Before
   /// groups and before bounds stands how many.
-  void read_entity(const Item& item, int dim) {
+  void read_entity(const MshItem& item, int dim) {
     const std::size_t groups_at = dim == 0 ? 4 : 7;
     lines_.record(item, groups_at + 1, any_number);
     const MshTag entity{dim, lines_.whole(0, "the tag of an entity")};
@@ -335,7 +200,7 @@ class MshParser {
                " nodes, but its blocks have ", mesh_.nodes.size(), "; save the mesh again");
   }
 
-  void read_node_block(const Item& item) {
+  void read_node_block(const MshItem& item) {
     lines_.record(item, 4);
     const auto dim = static_cast<std::size_t>(lines_.whole_from(0, 3, 0, "the dimension of an entity"));
     lines_.whole(1, "the tag of an entity");
@@ -369,7 +234,7 @@ class MshParser {
                elements, " elements, but its blocks have ", mesh_.elements.size(), "; save the mesh again");
   }
 
-  void read_element_block(const Item& item) {
+  void read_element_block(const MshItem& item) {
     lines_.record(item, 4);
     const MshTag entity{static_cast<int>(lines_.whole_from(0, 3, 0, "the dimension of an entity")),
                         lines_.whole(1, "the tag of an entity")};
@@ -389,7 +254,7 @@ class MshParser {
     for (std::int64_t i = 1; i <= count; ++i) read_element({"element", i, count}, kind->nodes);
   }
 
-  void read_element(const Item& item, int nodes) {
+  void read_element(const MshItem& item, int nodes) {
     lines_.record(item, 1 + static_cast<std::size_t>(nodes));
     lines_.whole(0, "the tag of an element");
     MshElement element;
