@@ -33,7 +33,7 @@ class VtkArrays {
   /// text.
   template <class T>
   std::string add(const std::string& name, int components, const std::vector<T>& values) {
-    const std::string element = declared(name, vtk_type<T>(), components);
+    std::string element = declared(name, vtk_type<T>(), components);
     append(values.data(), values.size() * sizeof(T));
     return element;
   }
