@@ -1,0 +1,57 @@
+#include "fem/supports.hpp"
+
+#include <algorithm>
+
+#include "core/check.hpp"
+
+namespace greenwater {
+
+void clamp(Supports& supports, int dim, const std::vector<int>& nodes) {
+  for (int axis = 0; axis < dim; ++axis) hold(supports, dim, nodes, axis);
+}
+
+void hold(Supports& supports, int dim, const std::vector<int>& nodes, int axis) {
+  expect(axis >= 0 && axis < dim);
+  auto& held = supports.held;
+  for (const int node : nodes) held.push_back(dim * node + axis);
+  std::sort(held.begin(), held.end());
+  held.erase(std::unique(held.begin(), held.end()), held.end());
+}
+
+void move(Supports& supports, int dim, const std::vector<int>& nodes, int axis,
+          std::function<double(double)> displacement) {
+  hold(supports, dim, nodes, axis);
+  Supports::Motion motion{{}, std::move(displacement)};
+  for (const int node : nodes) motion.unknowns.push_back(dim * node + axis);
+  supports.motions.push_back(std::move(motion));
+}
+
+std::vector<int> free_unknowns(const Supports& supports, int count) {
+  std::vector<int> free;
+  auto next = supports.held.begin();
+  for (int i = 0; i < count; ++i) {
+    if (next != supports.held.end() && *next == i)
+      ++next;
+    else
+      free.push_back(i);
+  }
+  expect(next == supports.held.end());
+  return free;
+}
+
+Eigen::SparseMatrix<double> part_of(const Eigen::SparseMatrix<double>& matrix, const std::vector<int>& chosen) {
+  std::vector<int> row(matrix.rows(), -1);
+  for (std::size_t i = 0; i < chosen.size(); ++i) row[chosen[i]] = static_cast<int>(i);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t j = 0; j < chosen.size(); ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, chosen[j]); entry; ++entry) {
+      if (row[entry.row()] >= 0) entries.emplace_back(row[entry.row()], static_cast<int>(j), entry.value());
+    }
+  }
+  const auto size = static_cast<Eigen::Index>(chosen.size());
+  Eigen::SparseMatrix<double> part(size, size);
+  part.setFromTriplets(entries.begin(), entries.end());
+  return part;
+}
+
+}  // namespace greenwater
