@@ -29,9 +29,9 @@ int check(const RunOptions& options) {
   CaseFile file(options.case_path, options.case_options);
   const Scene scene = checked_scene(file);
   const Runtime runtime(options.threads);
-  const Simulation simulation(scene);  // what cannot be built is a wrong case too
+  const auto simulation = make_simulation(scene);  // what cannot be built is a wrong case too
   std::cout << "case      " << scene.name << (scene.title.empty() ? "" : ": ") << scene.title << '\n';
-  for (const std::string& line : simulation.plan()) std::cout << line << '\n';
+  for (const std::string& line : simulation->plan()) std::cout << line << '\n';
   std::cout << "exit 0 (the case is good; nothing was written)\n";
   return 0;
 }

@@ -144,6 +144,17 @@ void warn_of_probes(const Scene& scene, Plan& plan) {
   }
 }
 
+Plan plan_of_structures(const Scene& scene) {
+  // Element matrices of 24 x 24 numbers where no two elements are alike, forces, and a sparse matrix for the frequencies.
+  constexpr double bytes_per_element = 20000;
+  Plan plan;
+  for (const StructureCase& structure : scene.structures)
+    plan.memory += bytes_per_element * static_cast<double>(structure.mesh.elements.size());
+  plan.steps = std::ceil(scene.end / scene.step * (1 - 1e-12));
+  if (scene.output.every_time > 0) plan.frames = std::floor(scene.end / scene.output.every_time + 1e-9) + 1;
+  return plan;
+}
+
 }  // namespace
 
 double front_cfl(const Scene& scene) {
@@ -164,6 +175,7 @@ std::array<double, 3> lattice_cells(const FluidCase& fluid, double spacing, int 
 }
 
 Plan plan_of(const Scene& scene) {
+  if (!scene.has_fluid) return plan_of_structures(scene);
   Plan plan;
   plan.particles = particles_of(scene);
   plan.at_most =
@@ -187,6 +199,9 @@ Plan plan_of(const Scene& scene) {
 }
 
 void require_memory(const Plan& plan, double memory, const Scene& scene) {
+  require<ResourceError>(scene.has_fluid || plan.memory <= memory, "the structures need about ", plan.memory / 1e9,
+                         " GB of memory, this machine has ", memory / 1e9, " GB; take fewer divisions");
+  if (!scene.has_fluid) return;
   constexpr double most_particles = std::numeric_limits<int>::max();
   const std::string cure = fmt::format("; take a larger mps.spacing than {:.6g} m", scene.mps.spacing);
   const Place& place = scene.mps.spacing_place;

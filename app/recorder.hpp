@@ -29,15 +29,16 @@ class Schedule {
 class Recorder {
  public:
   /// Makes the folder with case, resolved case and manifest. Throws CaseError or FileError.
-  Recorder(const RunOptions& options, const Scene& scene, const CaseFile& file, const RunOrigin& origin);
+  Recorder(const RunOptions& options, const Scene& scene, const CaseFile& file, const RunOrigin& origin,
+           const Simulation& simulation);
 
   const RunFolder& folder() const { return folder_; }
 
-  void history(const StepFacts& facts, double ms_per_step);
+  void history(const RunFacts& facts, double ms_per_step);
   /// Samples the probes that are due, and writes a frame when one is.
   void sample(Simulation& simulation);
   /// The frame of this step, if frames are wanted and this one is not written yet.
-  void last_frame(Simulation& simulation);
+  void last_frame(const Simulation& simulation);
   /// Closes the files and rewrites the manifest with the end; the marker comes last.
   void finish(const RunEnd& end, Marker marker);
 
@@ -47,9 +48,10 @@ class Recorder {
     Schedule schedule;
     std::size_t index;
   };
-  void open_probes(Simulation& simulation);
-  void open_frames(Simulation& simulation);
-  void frame(Simulation& simulation);
+  void open_probes(const Simulation& simulation);
+  void open_frames(const Simulation& simulation);
+  void open_paraview(const Picture& first);
+  void frame(const Simulation& simulation);
 
   const Scene& scene_;
   RunOrigin origin_;
@@ -62,6 +64,7 @@ class Recorder {
   Schedule frame_schedule_;
   std::unique_ptr<Results> results_;
   std::unique_ptr<Paraview> paraview_, moving_walls_;
+  std::vector<Paraview> solids_;
   std::int64_t last_frame_step_ = -1;
 };
 

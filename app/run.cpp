@@ -17,6 +17,7 @@
 #include "core/region.hpp"
 #include "io/status.hpp"
 #include "io/summary.hpp"
+#include "io/thermo.hpp"
 
 namespace greenwater {
 namespace {
@@ -50,8 +51,8 @@ class Run {
         plan_(plan_of(scene)),
         log_({options.verbosity, options.color}),
         eta_(total_steps()),
-        simulation_(with_free_folder(options, scene, origin_.started)),
-        recorder_(options, scene, file, origin_),
+        simulation_(make_simulation(with_free_folder(options, scene, origin_.started))),
+        recorder_(options, scene, file, origin_, *simulation_),
         status_(recorder_.folder().path() / "status.json") {}
 
   int go();
@@ -63,7 +64,7 @@ class Run {
   void say_header();
   void loop();
   void one_step();
-  void report(const StepFacts& facts);
+  void report(const RunFacts& facts);
   void say_summary();
   RunEnd end_of(int code, const std::string& outcome, const std::string& message = {}) const;
   int finish(const RunEnd& end, Marker marker, const char* state);
@@ -76,14 +77,14 @@ class Run {
   Log log_;
   Eta eta_;
   StopSignals signals_;
-  Simulation simulation_;
+  std::unique_ptr<Simulation> simulation_;
   Recorder recorder_;
   StatusFile status_;
   Clock::time_point start_ = Clock::now();
-  double output_seconds_ = 0, particle_steps_ = 0;
+  double output_seconds_ = 0, work_ = 0;
   double reported_seconds_ = 0;  // loop time at the last report
   std::int64_t reported_step_ = 0;
-  std::int64_t particles_ = 0;
+  double work_per_step_ = 0;
 };
 
 double Run::total_steps() const {
@@ -94,13 +95,13 @@ double Run::total_steps() const {
 
 bool Run::at_end() const {
   constexpr double round_off = 1e-9;
-  return simulation_.time() >= scene_.end * (1 - round_off);
+  return simulation_->time() >= scene_.end * (1 - round_off);
 }
 
 Progress Run::progress() const {
   Progress now;
-  now.step = simulation_.steps();
-  now.time = simulation_.time();
+  now.step = simulation_->steps();
+  now.time = simulation_->time();
   now.end = scene_.end;
   const double by_time = now.time / scene_.end;
   const double by_steps = static_cast<double>(now.step) / total_steps();
@@ -119,34 +120,33 @@ void Run::say_header() {
                        facts.kokkos_version, facts.kokkos_devices, origin_.backend, origin_.threads, facts.kokkos_arch,
                        facts.kokkos_kernels, facts.flags, host_name()));
   log_.say(fmt::format("units     SI{}", scene_.dimension == 2 ? "; forces and energies are per metre of depth" : ""));
-  for (const std::string& line : simulation_.plan()) log_.say(line);
+  for (const std::string& line : simulation_->plan()) log_.say(line);
   for (const std::string& option : origin_.case_options) log_.say("changed   " + option);
   log_.say("output    " + recorder_.folder().path().string());
   log_.say("");
 }
 
-void Run::report(const StepFacts& facts) {
+void Run::report(const RunFacts& facts) {
   const double seconds = seconds_since(start_);
   const double steps = static_cast<double>(std::max<std::int64_t>(1, facts.step - reported_step_));
   const double ms = facts.step > 0 ? 1000 * (seconds - reported_seconds_) / steps : 0;
   reported_seconds_ = seconds;
   reported_step_ = facts.step;
-  particles_ = facts.particles;
+  work_per_step_ = facts.work;
   for (const Notice& notice : facts.notices) log_.warn(notice, facts.step);
   recorder_.history(facts, ms);
-  log_.thermo(facts, ms, progress().eta);
-  const bool finite = std::isfinite(facts.max_speed) && std::isfinite(facts.kinetic_energy);
-  require<NumericsError>(finite, "step ", facts.step, ", t = ", facts.time,
-                         " s: a velocity is not a number; a shorter mps.time_step or a smaller spacing may help");
+  log_.thermo(simulation_->thermo_header() + pace_header(), facts.thermo + pace_text(ms, progress().eta));
+  require<NumericsError>(facts.finite, "step ", facts.step, ", t = ", facts.time,
+                         " s: a velocity is not a number; a shorter time step or a smaller spacing may help");
 }
 
 void Run::one_step() {
   const auto before = Clock::now();
-  simulation_.step();
-  particle_steps_ += static_cast<double>(particles_);
+  simulation_->step();
+  work_ += work_per_step_;
   const auto stepped = Clock::now();
-  if (simulation_.steps() % scene_.output.history_every_steps == 0 || at_end()) report(simulation_.facts());
-  recorder_.sample(simulation_);
+  if (simulation_->steps() % scene_.output.history_every_steps == 0 || at_end()) report(simulation_->run_facts());
+  recorder_.sample(*simulation_);
   log_.progress(progress());
   status_.update(progress(), log_.warnings());
   output_seconds_ += seconds_since(stepped);
@@ -154,19 +154,20 @@ void Run::one_step() {
 }
 
 void Run::loop() {
-  report(simulation_.facts());
-  recorder_.sample(simulation_);
+  report(simulation_->run_facts());
+  recorder_.sample(*simulation_);
   output_seconds_ += seconds_since(start_);
   while (!at_end() && signals_.received() == 0 &&
-         (options_.max_steps == 0 || simulation_.steps() < options_.max_steps)) {
+         (options_.max_steps == 0 || simulation_->steps() < options_.max_steps)) {
     one_step();
   }
-  if (reported_step_ != simulation_.steps()) report(simulation_.facts());
-  recorder_.last_frame(simulation_);
+  if (reported_step_ != simulation_->steps()) report(simulation_->run_facts());
+  recorder_.last_frame(*simulation_);
 }
 
 void Run::say_summary() {
-  const RunSpeed speed{simulation_.steps(), simulation_.time(), seconds_since(start_), particle_steps_};
+  const RunSpeed speed{simulation_->steps(), simulation_->time(), seconds_since(start_), work_,
+                       scene_.has_fluid ? "particle" : "element"};
   std::vector<TimedSection> sections;
   for (const RegionTime& region : region_times()) {
     if (region.name != "step") sections.push_back({region.name, region.seconds});  // "step" holds all the others
@@ -178,7 +179,7 @@ void Run::say_summary() {
 }
 
 RunEnd Run::end_of(int code, const std::string& outcome, const std::string& message) const {
-  return {code, outcome, message, simulation_.steps(), simulation_.time(), std::chrono::system_clock::now()};
+  return {code, outcome, message, simulation_->steps(), simulation_->time(), std::chrono::system_clock::now()};
 }
 
 int Run::finish(const RunEnd& end, Marker marker, const char* state) {
@@ -195,7 +196,7 @@ int Run::fail(const Failure& failure) {
   std::cerr << failure.message << '\n';
   try {
     log_.note(failure.message);
-    if (failure.code == 3) recorder_.last_frame(simulation_);
+    if (failure.code == 3) recorder_.last_frame(*simulation_);
   } catch (const std::exception& again) {
     std::cerr << again.what() << '\n';
   }

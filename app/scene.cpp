@@ -41,6 +41,24 @@ void read_domain(Section& root, Scene& scene) {
   scene.domain_place = section->place();
 }
 
+void read_water(Section& root, Scene& scene) {
+  read_fluid(root, scene);
+  read_mps(root.table("mps"), scene);
+  if (auto effects = root.table_if_present("effects")) read_effects(*effects, scene);
+}
+
+/// Of a run without fluid: the step in which structures take their substeps.
+void read_step_alone(Section& root, Scene& scene) {
+  constexpr double usual_steps = 1000;
+  for (const char* table : {"mps", "effects", "geometry", "domain"})
+    require_at(root.place(table), !root.offers(table), "[", table,
+               "] is about fluid, and there is no [[fluid]]: delete it");
+  Section time = root.table("time");
+  scene.step = time.number("step", "s", positive, scene.end / usual_steps);
+  require_at(time.place("step"), scene.step <= scene.end, "time.step = ", scene.step,
+             " s is longer than the run, time.end = ", scene.end, " s; take a shorter step");
+}
+
 }  // namespace
 
 Corners read_corners(Section& section, int dimension, const Corners& shown) {
@@ -95,13 +113,13 @@ Scene read_scene(CaseFile& file) {
   read_time(root.table("time"), scene);
   read_domain(root, scene);
   read_geometry(root, scene);
-  read_fluid(root, scene);
-  read_mps(root.table("mps"), scene);
-  if (auto effects = root.table_if_present("effects")) read_effects(*effects, scene);
+  scene.has_fluid = root.offers("fluid") || !root.offers("structure");
+  scene.has_fluid ? read_water(root, scene) : read_step_alone(root, scene);
+  read_structures(root, scene);
   read_output(root.table("output"), scene.output);
   read_probes(root, scene);
   file.finish();
-  check_scene(scene);
+  if (scene.has_fluid) check_scene(scene);
   return scene;
 }
 

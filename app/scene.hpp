@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/solid_mesh.hpp"
 #include "core/triangle_mesh.hpp"
 #include "io/case_file.hpp"
 
@@ -153,10 +154,53 @@ struct MpsCase {
   PressureCase pressure;
 };
 
+/// How far a structure's material, elements and supports go; where it stands and of what shape, its mesh tells.
+struct SupportCase {
+  Place place;
+  std::string part;                           // of the mesh; empty: the nodes in a box
+  Point min{}, max{};                         // of that box [m]
+  std::vector<int> axes;                      // along which it holds; 0, 1, 2 for x, y, z
+  std::optional<NumberFormula> displacement;  // of t [m], along each of the axes; absent: held
+};
+
+struct StructureLoadCase {
+  Place place;
+  std::string part;               // of the mesh: its facets; of a force, its nodes
+  std::string kind;               // pressure | traction | force
+  NumberFormula pressure;         // in x, y, z [Pa], against the outer side; with `follows` a number
+  VectorFormula vector;           // traction in x, y, z [Pa], or the force on the whole part [N]
+  bool follows = false;           // the pressure stays normal to the deformed facets
+  NumberFormula factor{"1", {}};  // in t
+};
+
+struct StructureCase {
+  std::string name, material;
+  Place place;
+  SolidMesh mesh;                              // [m], free of stress
+  std::optional<PlateCase> plate;              // where its mesh was made from one
+  double young = 0, poisson = 0, density = 0;  // [Pa], -, [kg/m^3]
+  std::string law = "linear";                  // linear | neo_hookean
+  std::string element = "incompatible";        // incompatible | full | mean_dilatation
+  std::string kinematics = "corotational";     // corotational | small | total_lagrangian
+  std::string plane = "strain";                // strain | stress; of a mesh of quadrilaterals
+  double depth = 1;                            // of such a mesh [m]
+  double time_step = 0;                        // h at most [s]; 0: safety x critical
+  Place time_step_place;
+  double safety = 0.9;                   // of the critical step
+  double damping = 0;                    // alpha [1/s]
+  std::optional<double> damping_ratio;   // instead: of the critical ...
+  double damping_frequency = 0;          // ... at this frequency [Hz]; 0: the first one
+  bool weight = true;                    // gravity acts
+  VectorFormula displacement, velocity;  // [m], [m/s] at the start
+  std::vector<SupportCase> supports;
+  std::vector<StructureLoadCase> loads;
+};
+
 struct ProbeCase {
   std::string name;
   Place place;
-  std::string kind;             // wave_front | surface_height | wall_pressure | wall_force | particle_count
+  std::string kind;             // wave_front | surface_height | wall_pressure | wall_force | particle_count |
+                                // structure_displacement | _velocity | _stress | _reaction | _energy
   double every_time = 0;        // [s]; 0 = every step
   Point point{};                // wall_pressure: where [m]
   double x = 0;                 // surface_height [m]
@@ -166,6 +210,8 @@ struct ProbeCase {
   std::string reading;          // wall_pressure, wall_force: neumann | average; wall_force also: reaction
   Point facing{};               // wall_pressure on a wall: the direction from the wall into the water; zero: not said
   Point min{}, max{};           // particle_count: box; all of the fluid when equal
+  std::size_t structure = 0;    // structure_*: which one; its place is `point`
+  std::string part;             // structure_reaction: of the mesh; empty: all of it
 };
 
 struct OutputCase {
@@ -189,8 +235,11 @@ struct Scene {
   std::vector<PolylineCase> polylines;
   std::vector<PlateCase> plates;
   std::vector<MeshCase> meshes;
+  bool has_fluid = true;  // else neither of the next two means anything
   FluidCase fluid;
   MpsCase mps;
+  std::vector<StructureCase> structures;
+  double step = 0;                       // without fluid: of the run, in substeps of the structures [s]
   std::vector<ViscosityCase> viscosity;  // each effect: none or one
   std::vector<CollisionCase> collision;
   std::vector<BodyForceCase> body_force;

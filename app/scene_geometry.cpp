@@ -60,18 +60,6 @@ PolylineCase read_polyline(Section& section) {
   return line;
 }
 
-PlateCase read_plate(Section& section, int dimension) {
-  constexpr double flat = std::numbers::pi / 2;
-  PlateCase plate;
-  plate.base = section.vector("base", "m", dimension, example(Point{0.6, 0, 0}));
-  plate.base_side = section.choice("base_side", {"upstream", "centre", "downstream"}, std::string("centre"));
-  plate.height = section.number("height", "m", positive, example(0.1));
-  plate.thickness = section.number("thickness", "m", at_least(0), 0.0);
-  if (dimension == 3) plate.width = section.number("width", "m", positive, example(0.2));
-  plate.angle = section.number("angle", "rad", between(-flat, flat), 0.0);
-  return plate;
-}
-
 template <class Geometry>
 void keep(Geometry geometry, const GeometryCase& common, std::vector<Geometry>& all) {
   static_cast<GeometryCase&>(geometry) = common;
@@ -89,6 +77,18 @@ void require_dimension(const Section& section, const std::string& type, int dime
 
 }  // namespace
 
+PlateCase read_plate(Section& section, int dimension, bool with_width) {
+  constexpr double flat = std::numbers::pi / 2;
+  PlateCase plate;
+  plate.base = section.vector("base", "m", dimension, example(Point{0.6, 0, 0}));
+  plate.base_side = section.choice("base_side", {"upstream", "centre", "downstream"}, std::string("centre"));
+  plate.height = section.number("height", "m", positive, example(0.1));
+  plate.thickness = section.number("thickness", "m", at_least(0), 0.0);
+  if (with_width) plate.width = section.number("width", "m", positive, example(0.2));
+  plate.angle = section.number("angle", "rad", between(-flat, flat), 0.0);
+  return plate;
+}
+
 void read_geometry(Section root, Scene& scene) {
   for (auto& [name, section] : root.named("geometry")) {
     require_safe_name(name, section.place(), "the geometry");
@@ -99,7 +99,7 @@ void read_geometry(Section root, Scene& scene) {
     read_common(name, section, scene.dimension, common);
     if (type == "box") keep(read_box(section, scene.dimension), common, scene.boxes);
     if (type == "polyline") keep(read_polyline(section), common, scene.polylines);
-    if (type == "plate") keep(read_plate(section, scene.dimension), common, scene.plates);
+    if (type == "plate") keep(read_plate(section, scene.dimension, scene.dimension == 3), common, scene.plates);
     if (type == "stl") keep(read_mesh(name, section), common, scene.meshes);
   }
 }

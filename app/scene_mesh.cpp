@@ -54,8 +54,12 @@ std::vector<std::string> settle(TriangleMesh& mesh, const Wanted& wanted, const 
 
 }  // namespace
 
-MeshCase read_mesh(const std::string& name, Section& section) {
+double metres_in(const std::string& unit) {
   static const std::map<std::string, double> metres{{"m", 1}, {"mm", 1e-3}, {"cm", 1e-2}, {"in", 0.0254}};
+  return metres.at(unit);
+}
+
+MeshCase read_mesh(const std::string& name, Section& section) {
   MeshCase mesh;
   mesh.name = name;
   mesh.place = section.place();
@@ -71,7 +75,7 @@ MeshCase read_mesh(const std::string& name, Section& section) {
   mesh.closed = wanted.closed;
   mesh.mesh = read_stl(path, place);
   mesh.repairs = settle(mesh.mesh, wanted, {path.string(), {}, place}, section.header());
-  scale(mesh.mesh, metres.at(unit));
+  scale(mesh.mesh, metres_in(unit));
   if (angle != 0) turn(mesh.mesh, axis, angle);
   move(mesh.mesh, by);
   return mesh;

@@ -15,10 +15,20 @@ void read_mps(Section mps, Scene& scene);               // [mps], [mps.pressure]
 void read_effects(Section effects, Scene& scene);       // [effects.NAME]
 void read_output(Section output, OutputCase& options);  // [output]
 void read_probes(Section root, Scene& scene);           // [[probe]]
+void read_structures(Section root, Scene& scene);       // [[structure]]
 
 /// `[geometry.NAME]` with type = "stl": the file, scaled, turned, moved and checked. Throws CaseError that names the STL
 /// file, the triangle or line in it, and the cure.
 MeshCase read_mesh(const std::string& name, Section& section);
+
+/// Base, height, thickness, angle of a plate; the width where it is asked for.
+PlateCase read_plate(Section& section, int dimension, bool with_width);
+
+/// The structure of this name, or nullptr.
+const StructureCase* find_structure(const Scene& scene, const std::string& name);
+
+/// Metres in a unit of length of a mesh file.
+double metres_in(const std::string& unit);
 
 /// The corners of a polyline [m], x and y in each row of a text file. Throws CaseError with the line in that file; a
 /// point that repeats the one before it is refused.

@@ -1,9 +1,62 @@
 // [[probe]]: what is sampled during the run, each into its own file.
 
+#include <algorithm>
+
+#include "app/plate_frame.hpp"
 #include "app/scene_parts.hpp"
 
 namespace greenwater {
 namespace {
+
+const Words fluid_kinds{"wave_front", "surface_height", "wall_pressure", "wall_force", "particle_count"};
+const Words structure_kinds{"structure_displacement", "structure_velocity", "structure_stress", "structure_reaction",
+                            "structure_energy"};
+
+Words kinds_of(const Scene& scene) {
+  Words kinds = scene.has_fluid ? fluid_kinds : Words{};
+  if (!scene.structures.empty()) kinds.insert(kinds.end(), structure_kinds.begin(), structure_kinds.end());
+  return kinds;
+}
+
+/// A point, or of a plate how high on it, in its middle.
+Point read_place_on(Section& section, const Scene& scene, const StructureCase& structure) {
+  if (!structure.plate || section.offers("point")) {
+    const Point shown = structure.mesh.nodes.empty() ? Point{} : structure.mesh.nodes.back();
+    return section.vector("point", "m", structure.mesh.dim, example(shown));
+  }
+  const PlateCase& plate = *structure.plate;
+  const double part = section.number("height_fraction", "-", between(0, 1), example(1.0));
+  const PlateFrame frame = frame_of(plate, scene.dimension);
+  Point point = frame.corner;
+  for (std::size_t d = 0; d < 3; ++d)
+    point[d] +=
+        part * plate.height * frame.up[d] + plate.thickness / 2 * frame.right[d] + plate.width / 2 * frame.over[d];
+  return point;
+}
+
+void read_structure_kind(Section& section, const Scene& scene, ProbeCase& probe) {
+  Words names;
+  for (const StructureCase& structure : scene.structures) names.push_back(structure.name);
+  const std::string name = section.choice("structure", names, names.front());
+  const StructureCase& structure = *find_structure(scene, name);
+  probe.structure = static_cast<std::size_t>(&structure - scene.structures.data());
+  const Words axes = structure.mesh.dim == 2 ? Words{"x", "y"} : Words{"x", "y", "z"};
+  if (probe.kind == "structure_energy") {
+    const Words energies{"kinetic", "strain", "lost", "loads", "supports", "balance"};
+    probe.component = section.choice("component", energies, std::string("strain"));
+  } else if (probe.kind == "structure_stress") {
+    probe.point = read_place_on(section, scene, structure);
+    probe.component = section.choice("component", {"xx", "yy", "zz", "xy", "yz", "xz", "mises"}, std::string("mises"));
+  } else if (probe.kind == "structure_reaction") {
+    Words parts;
+    for (const MeshPart& part : structure.mesh.parts) parts.push_back(part.name);
+    if (section.offers("part")) probe.part = section.choice("part", parts, example(std::string("bottom")));
+    probe.component = section.choice("component", axes, std::string("x"));
+  } else {
+    probe.point = read_place_on(section, scene, structure);
+    probe.component = section.choice("component", axes, std::string("x"));
+  }
+}
 
 /// Each kind asks for its own keys; those of another kind are unknown keys.
 void read_kind(Section& section, const Scene& scene, ProbeCase& probe) {
@@ -39,6 +92,7 @@ void read_kind(Section& section, const Scene& scene, ProbeCase& probe) {
 }  // namespace
 
 void read_probes(Section root, Scene& scene) {
+  const Words kinds = kinds_of(scene);
   for (Section& section : root.list("probe")) {
     ProbeCase probe;
     probe.place = section.place();
@@ -48,11 +102,10 @@ void read_probes(Section root, Scene& scene) {
       require_at(section.place("name"), other.name != probe.name, "two probes have the name \"", probe.name,
                  "\"; each writes its own file, so rename one");
     }
-    probe.kind =
-        section.choice("kind", {"wave_front", "surface_height", "wall_pressure", "wall_force", "particle_count"},
-                       example<std::string>("wave_front"));
+    probe.kind = section.choice("kind", kinds, example(kinds.front()));
     probe.every_time = section.number("every_time", "s", at_least(0), 0.0);
-    read_kind(section, scene, probe);
+    const bool of_structure = std::count(structure_kinds.begin(), structure_kinds.end(), probe.kind) > 0;
+    of_structure ? read_structure_kind(section, scene, probe) : read_kind(section, scene, probe);
     scene.probes.push_back(probe);
   }
 }

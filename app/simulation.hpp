@@ -1,70 +1,64 @@
 #pragma once
-// A scene that marches: step it, and ask it how it is.
+// A scene that marches, whatever it holds: step it, and ask it how it is. What a run drives.
 
-#include "app/build.hpp"
-#include "app/step_length.hpp"
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/scene.hpp"
 #include "core/table.hpp"
 #include "core/wall_shape.hpp"
 #include "io/step_facts.hpp"
-#include "kernels/sample.hpp"
+#include "io/vtu.hpp"
 
 namespace greenwater {
 
+/// A structure at one instant.
+struct SolidPicture {
+  std::string name;
+  const SolidMesh* mesh = nullptr;
+  SolidFrame frame;
+};
+
+/// What a frame shows.
+struct Picture {
+  std::vector<Table> fluids;     // none or one
+  std::vector<WallShape> walls;  // as they stand now
+  bool walls_move = false;
+  std::vector<SolidPicture> solids;
+};
+
+/// What a probe measures: the head of its column.
+struct ProbeHead {
+  std::string quantity, unit;
+};
+
 class Simulation {
  public:
-  /// Throws CaseError when the scene cannot be built.
-  explicit Simulation(const Scene& scene);
+  virtual ~Simulation() = default;
 
-  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or meets
-  /// a number that is none; the state is then that of the failed step.
-  void step();
+  /// From t to t + dt. Throws NumericsError when it cannot go on; the state is then that of the failed step.
+  virtual void step() = 0;
+  virtual double time() const = 0;
+  virtual std::int64_t steps() const = 0;
 
-  double time() const { return fluid_.time; }
-  std::int64_t steps() const { return steps_; }
-  /// The last step, before the first one that one [s].
-  double dt() const { return dt_; }
+  /// The columns of history.csv and of the log's table, and the numbers of the last step for both; notices are handed
+  /// out once. The time that a step took comes after them.
+  virtual std::vector<std::string> history_header() const = 0;
+  virtual std::string thermo_header() const = 0;
+  virtual RunFacts run_facts() = 0;
 
-  /// The numbers of the last step; its notices are handed out once.
-  StepFacts facts();
+  /// The value of a probe of the scene now; not a number where there is nothing to measure.
+  virtual double sample(std::size_t probe) = 0;
+  virtual ProbeHead probe_head(std::size_t probe) const = 0;
 
-  /// The value of a probe now; not a number where there is nothing to measure.
-  double sample(std::size_t probe);
-  std::string probe_unit(std::size_t probe) const;
+  virtual Picture picture() const = 0;
 
-  /// id, position, velocity, pressure, number_density and surface of every particle, in the order of the grid.
-  Table fluid_table() const;
-
-  /// What the run will be, for people: particles, steps, memory, walls, effects.
-  std::vector<std::string> plan() const;
-
-  /// The corners of every wall as it stands now [m]: two of a straight wall in 2-D, three of a triangle in 3-D.
-  std::vector<WallShape> wall_shapes() const;
-  bool walls_move() const;
-
-  const Fluid& fluid() const { return fluid_; }
-  const Effects& effects() const { return effects_; }
-
- private:
-  void note(const std::string& kind, const std::string& text, std::int64_t count);
-  double time_after() const;
-  void look_after(const StepReport& report);
-  double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
-
-  Scene scene_;
-  Fluid fluid_;
-  Effects effects_;
-  std::unique_ptr<Scheme> scheme_;
-  StepLength step_length_;
-  double dt_ = 0;
-  PointSampler sampler_;
-  std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything
-  std::vector<std::unique_ptr<Motion>> probe_motions_;  // of those on a wall that moves
-  std::vector<int> reactions_;                          // of each probe; place in the step's report, or -1
-  Point potential_zero_{};
-  double first_energy_ = 0;
-  std::int64_t steps_ = 0, retired_ = 0;
-  StepReport last_;
-  std::vector<Notice> notices_;
+  /// What the run will be, for people.
+  virtual std::vector<std::string> plan() const = 0;
 };
+
+/// The simulation that the scene asks for. Throws CaseError when it cannot be built.
+std::unique_ptr<Simulation> make_simulation(const Scene& scene);
 
 }  // namespace greenwater

@@ -62,9 +62,16 @@ auto LinearElement<Dim, Turning>::make(const Geometry<Dim>& g) const -> Data<dou
     const Eigen::MatrixXd kiu = k.bottomLeftCorner(inner, unknowns);
     k.topLeftCorner(unknowns, unknowns) -= kiu.transpose() * k.bottomRightCorner(inner, inner).llt().solve(kiu);
   }
-  Data<double> e;
+  Data<double> e = shape(g);
   for (int i = 0; i < unknowns; ++i)
     for (int j = 0; j < unknowns; ++j) e.stiffness[i][j] = (k(i, j) + k(j, i)) / 2;
+  return e;
+}
+
+// Without the stiffness.
+template <int Dim, bool Turning>
+auto LinearElement<Dim, Turning>::shape(const Geometry<Dim>& g) -> Data<double> {
+  Data<double> e{};
   for (int a = 0; a < nodes; ++a) {
     for (int d = 0; d < Dim; ++d) {
       e.place[a][d] = g.place[a][d];
@@ -79,7 +86,7 @@ Stress LinearElement<Dim, Turning>::stress(const Geometry<Dim>& g, const double 
   Tensor<Dim, double> f = identity<Dim, double>();
   double swelling = 0, mean[nodes][Dim];
   mean_gradients(g, mean);
-  const Data<double> e = make(g);
+  const Data<double> e = shape(g);
   const auto turned = frame(e, u);
   double d[unknowns];
   local_displacement(e, u, turned, d);

@@ -26,6 +26,7 @@ struct LinearElement {
   Rules rules;
 
   Data<double> make(const Geometry<Dim>& g) const;
+  static Data<double> shape(const Geometry<Dim>& g);
 
   template <class D, class T>
   T energy(const Data<D>& e, const T (&u)[nodes][Dim]) const {

@@ -120,11 +120,13 @@ Eigen::SparseMatrix<double> Solid::tangent(const Eigen::VectorXd& u) const {
 
 std::vector<std::array<double, 6>> Solid::stress(const Eigen::VectorXd& u) const {
   expect(u.size() == unknowns());
-  std::vector<std::array<double, 6>> stress;
-  for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) {
-    stress.push_back(elements_->stress(mesh_, e, u.data()));
-  }
-  return stress;
+  std::vector<std::array<double, 6>> all;
+  for (int e = 0; e < static_cast<int>(mesh_.elements.size()); ++e) all.push_back(stress(u, e));
+  return all;
+}
+
+std::array<double, 6> Solid::stress(const Eigen::VectorXd& u, int element) const {
+  return elements_->stress(mesh_, element, u.data());
 }
 
 }  // namespace greenwater

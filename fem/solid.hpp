@@ -67,6 +67,8 @@ class Solid {
   Eigen::SparseMatrix<double> tangent(const Eigen::VectorXd& u) const;
   /// Cauchy's stress at the centres of the elements: xx, yy, zz, xy, yz, zx [Pa].
   std::vector<std::array<double, 6>> stress(const Eigen::VectorXd& u) const;
+  /// That of one element.
+  std::array<double, 6> stress(const Eigen::VectorXd& u, int element) const;
 
  private:
   void link_nodes();

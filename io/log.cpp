@@ -8,7 +8,6 @@
 #include <cstdlib>
 
 #include "io/clock.hpp"
-#include "io/thermo.hpp"
 
 namespace greenwater {
 namespace {
@@ -55,9 +54,9 @@ void Log::note(const std::string& line) {
   to_file(line);
 }
 
-void Log::thermo(const StepFacts& facts, double ms_per_step, double eta) {
-  if (rows_++ % rows_per_header == 0) note(thermo_header());
-  note(thermo_line(facts, ms_per_step, eta));
+void Log::thermo(const std::string& header, const std::string& line) {
+  if (rows_++ % rows_per_header == 0) note(header);
+  note(line);
 }
 
 void Log::progress(const Progress& progress) {

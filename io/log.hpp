@@ -42,7 +42,7 @@ class Log {
   void say(const std::string& line);   ///< to both
   void note(const std::string& line);  ///< to run.log, and to the terminal with -v
   /// A row of the thermo table; its header comes before the first and every 40 rows.
-  void thermo(const StepFacts& facts, double ms_per_step, double eta);
+  void thermo(const std::string& header, const std::string& line);
   /// The live line; may be called every step.
   void progress(const Progress& progress);
   /// The first of each kind is printed, all are counted.

@@ -104,8 +104,8 @@ void write_group(hid_t parent, const Table& table, const fs::path& path, Precisi
 /// The frame is made without a name, brought to disk, and only then linked. Until then only the end of the file grows,
 /// behind what is in use: a run that is killed meanwhile leaves all earlier frames. What remains are the microseconds
 /// of the link itself (measured: one damaged file in 400 kills of a program that did nothing but write frames).
-void append(hid_t file, const Table& table, const Table& walls, const std::string& name, const fs::path& path,
-            Precision precision) {
+void append(hid_t file, const Table& table, const std::vector<Table>& groups, const std::string& name,
+            const fs::path& path, Precision precision) {
   const std::string what = "frame " + name + " cannot be written";
   Hdf5Handle group = hdf5_made(H5Gcreate_anon(file, H5P_DEFAULT, H5P_DEFAULT), H5Gclose, path, what);
   const Place5 place{group.id(), path};
@@ -114,7 +114,7 @@ void append(hid_t file, const Table& table, const Table& walls, const std::strin
   write_text(place, "name", table.name);
   write_text(place, "time_unit", "s");
   for (const Column& column : table.columns) write_column(place, column, table.rows, precision);
-  if (walls.rows > 0) write_group(group.id(), walls, path, precision);
+  for (const Table& inner : groups) write_group(group.id(), inner, path, precision);
   hdf5_done(H5Fflush(file, H5F_SCOPE_LOCAL), path, what);
   hdf5_done(H5Olink(group.id(), file, ("frames/" + name).c_str(), H5P_DEFAULT, H5P_DEFAULT), path, what);
   hdf5_done(group.close(), path, what);
@@ -136,14 +136,15 @@ Results::Results(const fs::path& path, const ResultsOrigin& origin, Precision pr
   hdf5_done(file.close(), path, "cannot be closed");
 }
 
-void Results::write(const Table& table, const std::vector<WallShape>& walls) {
+void Results::write(const Table& table, const std::vector<WallShape>& walls, std::vector<Table> groups) {
   constexpr double overhead = 1e5;  // bytes of a frame's headers, generously
-  const Table wall_corners = corners(walls);
-  require_room(path_.parent_path(),
-               stored_bytes(table, precision_) + stored_bytes(wall_corners, precision_) + overhead);
+  if (!walls.empty()) groups.push_back(corners(walls));
+  double bytes = stored_bytes(table, precision_) + overhead;
+  for (const Table& group : groups) bytes += stored_bytes(group, precision_);
+  require_room(path_.parent_path(), bytes);
   Hdf5Handle file = hdf5_made(H5Fopen(path_.c_str(), H5F_ACC_RDWR, hdf5_access(path_).id()), H5Fclose, path_,
                               "cannot be opened for the next frame");
-  append(file.id(), table, wall_corners, fmt::format("{:06d}", frames_), path_, precision_);
+  append(file.id(), table, groups, fmt::format("{:06d}", frames_), path_, precision_);
   hdf5_done(file.close(), path_, "cannot be closed after a frame");
   ++frames_;
 }

@@ -3,6 +3,8 @@
 //   /                 attributes: program, version, git, kokkos, backend, command_line, created, case (its whole text)
 //   /frames/000000/   attributes: time [s], step, name; one data set per column, each with its unit as an attribute
 //   /frames/000000/walls/   only where walls move: a row for each corner; position, and wall, the number of its wall
+//   /frames/000000/NAME/    of a structure: position, displacement, velocity of its nodes; in NAME_elements the nodes
+//                           of its elements, and stress (xx, yy, zz, xy, yz, xz)
 // The file is closed between frames, so that a killed run leaves it readable, with every frame written before.
 
 #include <filesystem>
@@ -28,9 +30,10 @@ class Results {
   /// Creates the file with its origin and an empty /frames. Throws FileError.
   Results(const std::filesystem::path& path, const ResultsOrigin& origin, Precision precision);
 
-  /// Appends a frame, with the walls where they are now if any are given; real columns are stored in the file's
-  /// precision. Throws FileError with the cause (disk full ...); what was written before stays readable.
-  void write(const Table& table, const std::vector<WallShape>& walls = {});
+  /// Appends a frame, with the walls where they are now if any are given, and other tables in groups of their names; real
+  /// columns are stored in the file's precision. Throws FileError with the cause (disk full ...); what was written
+  /// before stays readable.
+  void write(const Table& table, const std::vector<WallShape>& walls = {}, std::vector<Table> groups = {});
 
   std::int64_t frames() const { return frames_; }
   const std::filesystem::path& path() const { return path_; }

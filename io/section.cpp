@@ -70,6 +70,21 @@ std::int64_t Section::count(const std::string& key, std::int64_t low, const Pres
       [](std::int64_t value) { return toml_number(value); });
 }
 
+std::vector<std::int64_t> Section::counts(const std::string& key, std::int64_t low,
+                                          const Preset<std::vector<std::int64_t>>& preset) {
+  const auto read = [&](const CaseNode& node) {
+    std::vector<std::int64_t> values;
+    for (const CaseNode& item : items_of(node, key)) values.push_back(read_count(item, key, low));
+    return values;
+  };
+  const auto print = [](const std::vector<std::int64_t>& values) {
+    Words items;
+    for (const std::int64_t value : values) items.push_back(toml_number(value));
+    return toml_list(items);
+  };
+  return answer(key, "-", preset, read, print);
+}
+
 bool Section::flag(const std::string& key, const Preset<bool>& preset) {
   return answer(
       key, "", preset, [&](const CaseNode& node) { return read_flag(node, key); }, toml_flag);

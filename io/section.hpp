@@ -53,6 +53,9 @@ class Section {
   /// A number in SI; the case may write it with another unit of the same kind, as a text: "3 mm".
   double number(const std::string& key, const std::string& unit, const Bounds& range, const Preset<double>& preset);
   std::int64_t count(const std::string& key, std::int64_t low, const Preset<std::int64_t>& preset);
+  /// A list of them.
+  std::vector<std::int64_t> counts(const std::string& key, std::int64_t low,
+                                   const Preset<std::vector<std::int64_t>>& preset);
   bool flag(const std::string& key, const Preset<bool>& preset);
   std::string text(const std::string& key, const Preset<std::string>& preset);
   std::string choice(const std::string& key, const Words& allowed, const Preset<std::string>& preset);

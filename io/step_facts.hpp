@@ -1,5 +1,5 @@
 #pragma once
-// What one step has to tell: the numbers of the thermo line and of history.csv.
+// What one step has to tell.
 
 #include <cstdint>
 #include <string>
@@ -14,6 +14,18 @@ struct Notice {
   std::int64_t count = 1;
 };
 
+/// What any run tells after a step, ready for the log and for history.csv.
+struct RunFacts {
+  std::int64_t step = 0;
+  double time = 0;              ///< [s]
+  bool finite = true;           ///< all numbers of the state are numbers
+  double work = 0;              ///< done in one step: particles, or elements times substeps
+  std::vector<double> history;  ///< as many as the header has
+  std::string thermo;           ///< the line below its header
+  std::vector<Notice> notices;  ///< since the facts were last asked for
+};
+
+/// Of a step of the fluid.
 struct StepFacts {
   std::int64_t step = 0;
   double time = 0;            ///< [s]

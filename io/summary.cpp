@@ -18,11 +18,11 @@ std::string row(const std::string& name, double seconds, const RunSpeed& speed) 
 
 std::vector<std::string> summary_lines(const RunSpeed& speed, const std::vector<TimedSection>& sections) {
   const double steps = static_cast<double>(std::max<std::int64_t>(1, speed.steps));
-  const double rate = speed.loop_seconds > 0 ? speed.particle_steps / speed.loop_seconds : 0;
+  const double rate = speed.loop_seconds > 0 ? speed.work / speed.loop_seconds : 0;
   std::vector<std::string> lines{
       fmt::format("done      {} steps, {:.7g} s simulated, loop {:.2f} s", speed.steps, speed.simulated,
                   speed.loop_seconds),
-      fmt::format("speed     {:.3f} ms/step, {:.3g} particle-steps/s", 1000 * speed.loop_seconds / steps, rate),
+      fmt::format("speed     {:.3f} ms/step, {:.3g} {}-steps/s", 1000 * speed.loop_seconds / steps, rate, speed.of),
       fmt::format("{:<20} {:>10} {:>6} {:>10}", "section", "time[s]", "%", "ms/step")};
   double named = 0;
   for (const TimedSection& section : sections) {

@@ -14,9 +14,10 @@ struct TimedSection {
 
 struct RunSpeed {
   std::int64_t steps = 0;
-  double simulated = 0;       ///< [s]
-  double loop_seconds = 0;    ///< wall time of all steps and their output
-  double particle_steps = 0;  ///< particles summed over the steps
+  double simulated = 0;     ///< [s]
+  double loop_seconds = 0;  ///< wall time of all steps and their output
+  double work = 0;          ///< particles, or elements times substeps, summed over the steps
+  const char* of = "particle";
 };
 
 /// `done`, `speed`, the time table (name, seconds, share of the loop, ms per step) and the memory line.

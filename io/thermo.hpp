@@ -8,13 +8,16 @@
 
 namespace greenwater {
 
-/// The heads of the columns, with units.
+/// The heads of the columns, with units, and one line below them.
 std::string thermo_header();
-/// One line below them; `ms_per_step` is wall time [ms], `eta` the time left [s].
-std::string thermo_line(const StepFacts& facts, double ms_per_step, double eta);
+std::string thermo_line(const StepFacts& facts);
 
 /// The columns of history.csv, with units; energies are per metre of depth in 2-D.
 std::vector<std::string> history_header(int dimension);
-std::vector<double> history_row(const StepFacts& facts, double ms_per_step);
+std::vector<double> history_row(const StepFacts& facts);
+
+/// What stands behind the line of any run: wall time of a step [ms] and the time left [s].
+std::string pace_header();
+std::string pace_text(double ms_per_step, double eta);
 
 }  // namespace greenwater

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "app/simulation.hpp"
+#include "app/fluid_simulation.hpp"
 #include "core/interior.hpp"
 #include "tests/support.hpp"
 
@@ -17,7 +17,7 @@ inline Scene scene_of(const std::string& path, const std::vector<std::string>& s
 }
 
 /// Places of all particles now.
-inline std::vector<Point> places_of(const Simulation& simulation) {
+inline std::vector<Point> places_of(const FluidSimulation& simulation) {
   const auto x = host(simulation.fluid().particles.position);
   std::vector<Point> places(simulation.fluid().particles.count);
   for (std::size_t i = 0; i < places.size(); ++i)
@@ -25,7 +25,7 @@ inline std::vector<Point> places_of(const Simulation& simulation) {
   return places;
 }
 
-inline Point centroid_of(const Simulation& simulation) {
+inline Point centroid_of(const FluidSimulation& simulation) {
   Point sum{};
   const auto places = places_of(simulation);
   for (const auto& x : places)
@@ -60,7 +60,7 @@ struct Watched {
     while (simulation.time() < end * (1 - 1e-9)) step();
   }
 
-  Simulation simulation;
+  FluidSimulation simulation;
   std::function<bool(const Point&)> crossed;
   double lowest = 0, energy = 0, gain = 0, fastest = 0;
   std::int64_t stopped = 0, outside = 0, lost = 0;

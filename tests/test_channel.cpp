@@ -31,7 +31,7 @@ double couette(double y, double t) {
 
 // In the middle third of the channel, at the times that the paper shows.
 void follows(const std::string& path, double (*series)(double y, double t)) {
-  Simulation simulation(scene_of("channel/" + path));
+  FluidSimulation simulation(scene_of("channel/" + path));
   for (const double at : {0.0225, 0.045, 0.1125, 0.225}) {
     while (simulation.time() < at * (1 - 1e-9)) simulation.step();
     const auto u = host(simulation.fluid().particles.velocity);

@@ -132,7 +132,7 @@ TEST_CASE("a ball that is shaken stays a ball", "[unit][fill]") {
 }
 
 TEST_CASE("a ball runs", "[unit][fill]") {
-  Simulation simulation(
+  FluidSimulation simulation(
       flat({"fluid.0.region={type=\"ball\", centre=[0.25, 0.3], radius=0.1}", "fluid.0.velocity=[1, 0]"}));
   CHECK(simulation.fluid().particles.count == 80);
   for (int k = 0; k < 3; ++k) simulation.step();

@@ -186,7 +186,7 @@ TEST_CASE("a column of 29,700 particles collapses in 3-D", "[validation][3d][ful
 
 TEST_CASE("wall force and pressure probes in 3-D", "[unit][probes]") {
   // Hydrostatic pressure put in by hand: the force on a side of the box is the integral of it.
-  Simulation simulation(scene_of("dam_break_3d/dam_break_3d.toml", {"fluid.0.region.max=[1.0, 0.6, 0.2]"}));
+  FluidSimulation simulation(scene_of("dam_break_3d/dam_break_3d.toml", {"fluid.0.region.max=[1.0, 0.6, 0.2]"}));
   const Fluid& fluid = simulation.fluid();
   const auto x = host(fluid.particles.position);
   const auto p = Kokkos::create_mirror(fluid.particles.pressure);
@@ -208,7 +208,7 @@ TEST_CASE("wall force and pressure probes in 3-D", "[unit][probes]") {
 }
 
 TEST_CASE("the wrong number of particles is an error with its place", "[unit][run]") {
-  CHECK_THROWS_WITH(Simulation(scene_of("dam_break_rigid/quick.toml", {"mps.expected_particles=4999"})),
+  CHECK_THROWS_WITH(FluidSimulation(scene_of("dam_break_rigid/quick.toml", {"mps.expected_particles=4999"})),
                     Catch::Contains("5000 particles, not the expected 4999"));
 }
 
@@ -229,7 +229,7 @@ TEST_CASE("a pressure probe on a wall reads the water before it", "[unit][probes
 
 TEST_CASE("probes read a lattice at rest", "[unit][probes]") {
   const Scene scene = scene_of("dam_break_rigid/quick.toml");
-  Simulation simulation(scene);
+  FluidSimulation simulation(scene);
   CHECK(simulation.sample(0) == Approx(0.2));  // front
   CHECK(simulation.sample(1) == Approx(0.4));  // height at x = 0.1
   CHECK(simulation.sample(2) == 0);            // no water at the plate
@@ -237,7 +237,8 @@ TEST_CASE("probes read a lattice at rest", "[unit][probes]") {
 }
 
 TEST_CASE("what leaves the domain is counted and its mass told, and the rest goes on", "[unit][run]") {
-  Simulation simulation(scene_of("dam_break_rigid/quick.toml", {"domain.min=[-0.1, -0.1]", "domain.max=[0.22, 0.6]"}));
+  FluidSimulation simulation(
+      scene_of("dam_break_rigid/quick.toml", {"domain.min=[-0.1, -0.1]", "domain.max=[0.22, 0.6]"}));
   while (simulation.time() < 0.06) simulation.step();
   const StepFacts facts = simulation.facts();
   REQUIRE(facts.lost > 0);
@@ -253,7 +254,7 @@ TEST_CASE("initial velocity and body force may be formulas", "[unit][run]") {
   const Scene scene =
       scene_of("hydrostatic/tank.toml", {"fluid.0.velocity=[\"-2*y\", \"0.1*x + t\"]", "time.gravity=[0, 0]",
                                          "effects.body_force.acceleration=[\"3*x\", \"cos(t)\"]"});
-  Simulation simulation(scene);
+  FluidSimulation simulation(scene);
   const Particles& p = simulation.fluid().particles;
   for (int i = 0; i < p.count; ++i) {
     CHECK(host(p.velocity)(i, 0) == Approx(-2 * host(p.position)(i, 1)));
@@ -267,7 +268,7 @@ TEST_CASE("initial velocity and body force may be formulas", "[unit][run]") {
 }
 
 TEST_CASE("a velocity that is no number ends the run and is not taken for a departure", "[unit][run]") {
-  Simulation simulation(
+  FluidSimulation simulation(
       scene_of("dam_break_rigid/quick.toml", {"effects.body_force.acceleration=[\"t > 0.001 ? 0/0 : 0\", 0]"}));
   CHECK_THROWS_AS(
       [&] {

@@ -107,7 +107,7 @@ TEST_CASE("walls that move tell their speed and acceleration", "[unit][moving]")
 }
 
 TEST_CASE("moving walls allocate nothing in a steady step", "[unit][moving]") {
-  Simulation simulation(scene_of("moving_walls/rolling.toml"));
+  FluidSimulation simulation(scene_of("moving_walls/rolling.toml"));
   for (int k = 0; k < 5; ++k) simulation.step();
   Ears ears;
   for (int k = 0; k < 5; ++k) simulation.step();
@@ -115,7 +115,7 @@ TEST_CASE("moving walls allocate nothing in a steady step", "[unit][moving]") {
 }
 
 TEST_CASE("a pressure probe on a wall that moves goes with it", "[unit][moving]") {
-  Simulation simulation(scene_of("moving_walls/piston.toml"));
+  FluidSimulation simulation(scene_of("moving_walls/piston.toml"));
   for (int k = 0; k < 400; ++k) simulation.step();
   const Fluid& fluid = simulation.fluid();
   const auto x = host(fluid.particles.position);
@@ -204,7 +204,7 @@ TEST_CASE("a rolling tank by moving walls is the same in its own frame", "[valid
     const double sway = std::cos(a) * (c[0] - 0.15) + std::sin(a) * c[1], sway_frame = d[0] - 0.15;
     crest = std::max(crest, std::fabs(sway_frame));
     largest_difference = std::max(largest_difference, std::fabs(sway - sway_frame));
-    const auto force_of = [](Simulation& s) {
+    const auto force_of = [](FluidSimulation& s) {
       PointSampler sampler;
       return wall_force(sampler, s.fluid(), wall_patches(s.fluid().faces, 0, s.fluid().spacing), Reading::average);
     };

@@ -33,7 +33,7 @@ Scene adaptive_tank(std::vector<std::string> settings = {}) {
 }
 
 /// The first step of that.
-double first_step(const std::vector<std::string>& settings) { return Simulation(adaptive_tank(settings)).dt(); }
+double first_step(const std::vector<std::string>& settings) { return FluidSimulation(adaptive_tank(settings)).dt(); }
 
 }  // namespace
 
@@ -96,7 +96,7 @@ TEST_CASE("each limit of the step in turn is the one that counts", "[unit][step_
 
 TEST_CASE("a step grows only so fast, and shrinks at once", "[unit][step_length]") {
   const Scene scene = adaptive_tank({"mps.growth=1.2"});
-  const Simulation simulation(scene);
+  const FluidSimulation simulation(scene);
   const StepLength length(scene);
   CHECK(length.next(simulation.fluid(), 1e-4) == Approx(1.2e-4));
   CHECK(length.next(simulation.fluid(), 1) == length.next(simulation.fluid(), infinite));
@@ -107,7 +107,7 @@ TEST_CASE("the last step ends at the end, and none is tiny", "[unit][step_length
     const Scene scene =
         scene_of("hydrostatic/tank.toml", {"mps.adaptive=true", "mps.time_step=\"0.9 ms\"",
                                            "fluid.0.velocity=[\"0.1*sin(30*x)\", 0]", std::string("time.end=") + end});
-    Simulation simulation(scene);
+    FluidSimulation simulation(scene);
     double before = infinite, shortest = infinite, sum = 0;
     while (simulation.time() < scene.end) {
       simulation.step();
@@ -126,14 +126,14 @@ TEST_CASE("the last step ends at the end, and none is tiny", "[unit][step_length
 }
 
 TEST_CASE("a wall that jumps a little does not stop the run", "[unit][step_length]") {
-  Simulation simulation(adaptive_tank({"geometry.tank.motion.displacement=[0, \"t > 0.01 ? -0.003 : 0\"]"}));
+  FluidSimulation simulation(adaptive_tank({"geometry.tank.motion.displacement=[0, \"t > 0.01 ? -0.003 : 0\"]"}));
   for (int k = 0; k < 4; ++k) simulation.step();
   CHECK(simulation.time() > 0.01);
 }
 
 TEST_CASE("fixed steps are what they were: multiples of one, and nobody asks for speeds", "[unit][step_length]") {
   const Scene scene = scene_of("hydrostatic/tank.toml", {"fluid.0.velocity=[\"30*y\", 0]"});
-  Simulation simulation(scene);
+  FluidSimulation simulation(scene);
   const Ears ears;
   for (int k = 1; k <= 7; ++k) {
     simulation.step();
@@ -144,12 +144,12 @@ TEST_CASE("fixed steps are what they were: multiples of one, and nobody asks for
 }
 
 TEST_CASE("a velocity that is no number ends a run of adaptive steps too", "[unit][step_length]") {
-  Simulation simulation(adaptive_tank({"effects.body_force.acceleration=[\"t > 0.001 ? 0/0 : 0\", 0]"}));
+  FluidSimulation simulation(adaptive_tank({"effects.body_force.acceleration=[\"t > 0.001 ? 0/0 : 0\", 0]"}));
   CHECK_THROWS_AS(
       [&] {
         for (int k = 0; k < 10; ++k) simulation.step();
       }(),
       NumericsError);
-  CHECK_THROWS_WITH(Simulation(adaptive_tank({"fluid.0.velocity=[\"x < 0.004 ? 0/0 : 0\", 0]"})),
+  CHECK_THROWS_WITH(FluidSimulation(adaptive_tank({"fluid.0.velocity=[\"x < 0.004 ? 0/0 : 0\", 0]"})),
                     Catch::Contains("a velocity is not a number"));
 }

@@ -52,7 +52,7 @@ TEST_CASE("a closed shape is filled with as many particles as have room, spread 
     INFO(path);
     const Scene scene = scene_of("hydrostatic/" + path);
     const Interior inside = inside_of(scene);
-    const Simulation simulation(scene);
+    const FluidSimulation simulation(scene);
     const auto& fluid = simulation.fluid();
     CHECK(fluid.particles.count ==
           std::lround(inside.measure_below(scene.fluid.level) / std::pow(scene.mps.spacing, scene.dimension)));

@@ -1,0 +1,230 @@
+#include "app/fluid_simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/plan.hpp"
+#include "core/check.hpp"
+#include "io/thermo.hpp"
+
+namespace greenwater {
+namespace {
+
+int body_of(const WallFaces& walls, const std::string& name) {
+  const auto found =
+      std::find_if(walls.bodies.begin(), walls.bodies.end(), [&](const auto& b) { return b.name == name; });
+  expect(found != walls.bodies.end());
+  return static_cast<int>(found - walls.bodies.begin());
+}
+
+Reading reading_of(const ProbeCase& probe) { return probe.reading == "average" ? Reading::average : Reading::neumann; }
+
+// "The lowest number there is" of a maximum over nothing.
+double or_nothing(double value) { return value < -1e300 ? std::numeric_limits<double>::quiet_NaN() : value; }
+
+template <class Value, class Field>
+Column scalar_column(const std::string& name, const std::string& unit, const Field& field, int count) {
+  const auto host = Kokkos::create_mirror_view(field);
+  Kokkos::deep_copy(host, field);
+  std::vector<Value> values(count);
+  for (int i = 0; i < count; ++i) values[i] = static_cast<Value>(host(i));
+  return {name, unit, 1, std::move(values)};
+}
+
+template <class Field>
+Column vector_column(const std::string& name, const std::string& unit, const Field& field, int count) {
+  const auto host = Kokkos::create_mirror_view(field);
+  Kokkos::deep_copy(host, field);
+  const int dim = static_cast<int>(field.extent(1));
+  std::vector<double> values(static_cast<std::size_t>(count) * dim);
+  for (int i = 0; i < count; ++i)
+    for (int d = 0; d < dim; ++d) values[static_cast<std::size_t>(i) * dim + d] = host(i, d);
+  return {name, unit, dim, std::move(values)};
+}
+
+std::string effects_text(const Effects& effects) {
+  std::string text;
+  for (const Stage stage : {Stage::force, Stage::walls, Stage::after_move}) {
+    for (const auto& effect : effects.at(stage)) text += (text.empty() ? "" : ", ") + std::string(effect->name());
+  }
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace
+
+FluidSimulation::FluidSimulation(const Scene& scene)
+    : scene_(scene),
+      fluid_(build_fluid(scene, build_walls(scene))),
+      effects_(build_effects(scene)),
+      scheme_(build_scheme(scene, fluid_)),
+      step_length_(scene),
+      dt_(step_length_.next(fluid_, std::numeric_limits<double>::infinity())) {
+  for (const ProbeCase& probe : scene_.probes) {
+    const bool of_pressure = probe.kind == "wall_pressure";
+    pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);
+    reactions_.push_back(probe.reading == "reaction" ? scheme_->watch(body_of(fluid_.faces, probe.wall)) : -1);
+    probe_motions_.push_back(of_pressure ? motion_of(scene_, fluid_.faces, probe) : nullptr);
+  }
+  // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
+  const Extent extent = scene_extent(scene_, fluid_.faces);
+  for (int d = 0; d < 3; ++d) potential_zero_[d] = scene_.gravity[d] > 0 ? extent.high[d] : extent.low[d];
+  first_energy_ = energy(fluid_sums(fluid_, potential_zero_));
+}
+
+void FluidSimulation::step() {
+  Region region("step");
+  if (steps_ > 0) dt_ = step_length_.next(fluid_, dt_);
+  last_ = scheme_->step(fluid_, effects_, static_cast<real>(dt()));
+  ++steps_;
+  fluid_.time = time_after();
+  look_after(last_);
+}
+
+/// Multiples where all steps are one, sums where they adapt; the end is met exactly.
+double FluidSimulation::time_after() const {
+  if (!scene_.mps.adaptive) return static_cast<accum>(steps_) * dt();
+  const double left = scene_.end - time();
+  return left > 0 && dt() >= left ? scene_.end : time() + dt();
+}
+
+void FluidSimulation::look_after(const StepReport& report) {
+  require<NumericsError>(report.departed.not_a_number == 0, "step ", steps_, ", t = ", time(),
+                         " s: ", report.departed.not_a_number,
+                         " positions are not a number any more; a smaller mps.time_step may help");
+  retired_ += report.departed.outside;
+  if (report.stopped > 0)
+    note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
+  if (report.departed.outside > 0)
+    note("lost",
+         text_of("particles left the domain and were retired; so far ", retired_, " with ",
+                 static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
+                 scene_.dimension == 2 ? " kg/m" : " kg"),
+         report.departed.outside);
+  if (!report.solve.recovery.empty() && report.solve.converged)
+    note("recovery",
+         text_of("the pressure solve failed (", report.solve.cause, ") and went on with ", report.solve.recovery), 1);
+  if (report.solve.converged) return;
+  const std::string text =
+      text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",
+              report.solve.iterations, " iterations, relative residual ", report.solve.residual);
+  require<NumericsError>(scene_.mps.pressure.on_stall == "warn" && std::isfinite(report.solve.residual), text,
+                         "; a smaller mps.time_step, or mps.pressure.max_iterations larger, may help");
+  note("stall", text, 1);
+}
+
+void FluidSimulation::note(const std::string& kind, const std::string& text, std::int64_t count) {
+  const auto same = std::find_if(notices_.begin(), notices_.end(), [&](const Notice& n) { return n.kind == kind; });
+  if (same == notices_.end())
+    notices_.push_back({kind, text, count});
+  else
+    same->count += count;
+}
+
+StepFacts FluidSimulation::facts() {
+  const FluidSums sums = fluid_sums(fluid_, potential_zero_);
+  StepFacts facts;
+  facts.step = steps_;
+  facts.time = time();
+  facts.dt = dt();
+  facts.iterations = last_.solve.iterations;
+  facts.residual = last_.solve.residual;
+  facts.max_speed = sums.max_speed;
+  facts.cfl = sums.max_speed * dt() / scene_.mps.spacing;
+  facts.kinetic_energy = sums.kinetic;
+  facts.potential_energy = sums.potential;
+  facts.energy_ratio = first_energy_ > 0 ? energy(sums) / first_energy_ : 1;
+  facts.density_error = sums.density_error;
+  facts.particles = fluid_.particles.count;
+  facts.lost = retired_;
+  if (facts.cfl > scene_.mps.cfl_warn)
+    note("cfl", text_of("max speed x dt / spacing = ", facts.cfl, " is above mps.cfl_warn = ", scene_.mps.cfl_warn), 1);
+  facts.notices = std::exchange(notices_, {});
+  return facts;
+}
+
+double FluidSimulation::sample(std::size_t index) {
+  const ProbeCase& probe = scene_.probes[index];
+  if (probe.kind == "wave_front") return or_nothing(wave_front(fluid_));
+  if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x, probe.y));
+  if (probe.kind == "wall_pressure") {
+    const Point& start = pressure_points_[index];
+    const Point now = probe_motions_[index] ? probe_motions_[index]->at(start, time()) : start;
+    return sampler_.pressure(fluid_, {now}, reading_of(probe)).front();
+  }
+  if (probe.kind == "wall_force") {
+    const std::size_t axis = probe.component.front() - 'x';
+    if (reactions_[index] >= 0) return steps_ > 0 ? last_.reactions[reactions_[index]][axis] : 0;
+    const auto patches = wall_patches(fluid_.faces, body_of(fluid_.faces, probe.wall), fluid_.spacing);
+    return wall_force(sampler_, fluid_, patches, reading_of(probe))[axis];
+  }
+  expect(probe.kind == "particle_count");
+  if (probe.min == probe.max) return static_cast<double>(fluid_.particles.count);
+  return static_cast<double>(particle_count(fluid_, probe.min, probe.max));
+}
+
+ProbeHead FluidSimulation::probe_head(std::size_t index) const {
+  const std::string& kind = scene_.probes[index].kind;
+  if (kind == "wave_front") return {"front", "m"};
+  if (kind == "surface_height") return {"height", "m"};
+  if (kind == "wall_pressure") return {"pressure", "Pa"};
+  if (kind == "wall_force") return {"force", scene_.dimension == 2 ? "N/m" : "N"};
+  return {"count", "-"};
+}
+
+Table FluidSimulation::fluid_table() const {
+  const Particles& p = fluid_.particles;
+  Table table{scene_.fluid.name, time(), steps_, static_cast<std::size_t>(p.count), {}};
+  table.columns.push_back(scalar_column<std::int64_t>("id", "-", p.id, p.count));
+  table.columns.push_back(vector_column("position", "m", p.position, p.count));
+  table.columns.push_back(vector_column("velocity", "m/s", p.velocity, p.count));
+  table.columns.push_back(scalar_column<double>("pressure", "Pa", p.pressure, p.count));
+  table.columns.push_back(scalar_column<double>("number_density", "-", p.number_density, p.count));
+  table.columns.push_back(scalar_column<std::uint8_t>("surface", "-", p.surface, p.count));
+  return table;
+}
+
+std::vector<std::string> FluidSimulation::plan() const {
+  Plan plan = plan_of(scene_);
+  plan.particles = fluid_.particles.count;  // the arithmetic of the plan knows no plates and no slanting walls
+  plan.at_most = false;
+  std::vector<std::string> lines = plan_lines(plan, scene_);
+  lines.push_back(text_of("walls     ", fluid_.walls.panels, fluid_.faces.dim == 2 ? " straight" : " plane",
+                          " panels, ", fluid_.walls.count - fluid_.walls.panels, " reflections in corners"));
+  lines.push_back("effects   " + effects_text(effects_));
+  return lines;
+}
+
+std::vector<WallShape> FluidSimulation::wall_shapes() const {
+  std::vector<WallShape> shapes;
+  for (const WallFace& face : fluid_.faces.faces) {
+    shapes.emplace_back();
+    for (int e = 0; e < fluid_.faces.dim; ++e) shapes.back().push_back(face.corner[e].position);
+  }
+  return shapes;
+}
+
+Picture FluidSimulation::picture() const {
+  return {{fluid_table()}, wall_shapes(), !effects_.at(Stage::walls).empty(), {}};
+}
+
+std::vector<std::string> FluidSimulation::history_header() const {
+  return greenwater::history_header(scene_.dimension);
+}
+
+std::string FluidSimulation::thermo_header() const { return greenwater::thermo_header(); }
+
+RunFacts FluidSimulation::run_facts() {
+  StepFacts now = facts();
+  RunFacts told;
+  told.step = now.step;
+  told.time = now.time;
+  told.finite = std::isfinite(now.max_speed) && std::isfinite(now.kinetic_energy);
+  told.work = static_cast<double>(now.particles);
+  told.history = history_row(now);
+  told.thermo = thermo_line(now);
+  told.notices = std::move(now.notices);
+  return told;
+}
+
+}  // namespace greenwater

@@ -1,0 +1,69 @@
+#pragma once
+// A scene of water and walls that marches.
+
+#include "app/build.hpp"
+#include "app/simulation.hpp"
+#include "app/step_length.hpp"
+#include "kernels/sample.hpp"
+
+namespace greenwater {
+
+class FluidSimulation : public Simulation {
+ public:
+  /// Throws CaseError when the scene cannot be built.
+  explicit FluidSimulation(const Scene& scene);
+
+  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or meets
+  /// a number that is none; the state is then that of the failed step.
+  void step() override;
+
+  double time() const override { return fluid_.time; }
+  std::int64_t steps() const override { return steps_; }
+  /// The last step, before the first one that one [s].
+  double dt() const { return dt_; }
+
+  /// The numbers of the last step; its notices are handed out once.
+  StepFacts facts();
+  std::vector<std::string> history_header() const override;
+  std::string thermo_header() const override;
+  RunFacts run_facts() override;
+
+  double sample(std::size_t probe) override;
+  ProbeHead probe_head(std::size_t probe) const override;
+
+  /// id, position, velocity, pressure, number_density and surface of every particle, in the order of the grid.
+  Table fluid_table() const;
+  /// The corners of every wall as it stands now [m]: two of a straight wall in 2-D, three of a triangle in 3-D.
+  std::vector<WallShape> wall_shapes() const;
+  Picture picture() const override;
+
+  /// Particles, steps, memory, walls, effects.
+  std::vector<std::string> plan() const override;
+
+  const Fluid& fluid() const { return fluid_; }
+  const Effects& effects() const { return effects_; }
+
+ private:
+  void note(const std::string& kind, const std::string& text, std::int64_t count);
+  double time_after() const;
+  void look_after(const StepReport& report);
+  double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
+
+  Scene scene_;
+  Fluid fluid_;
+  Effects effects_;
+  std::unique_ptr<Scheme> scheme_;
+  StepLength step_length_;
+  double dt_ = 0;
+  PointSampler sampler_;
+  std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything
+  std::vector<std::unique_ptr<Motion>> probe_motions_;  // of those on a wall that moves
+  std::vector<int> reactions_;                          // of each probe; place in the step's report, or -1
+  Point potential_zero_{};
+  double first_energy_ = 0;
+  std::int64_t steps_ = 0, retired_ = 0;
+  StepReport last_;
+  std::vector<Notice> notices_;
+};
+
+}  // namespace greenwater

@@ -1,0 +1,308 @@
+#include "app/structure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "app/formula.hpp"
+#include "core/check.hpp"
+#include "fem/critical_step.hpp"
+
+namespace greenwater {
+namespace {
+
+constexpr const char* axis_names = "xyz";
+
+/// A complaint of the finite elements, with the place of the structure in the case.
+template <class Build>
+auto built_at(const Place& place, Build build) {
+  try {
+    return build();
+  } catch (const CaseError& error) {
+    refuse(place, error.what());
+  }
+}
+
+std::unique_ptr<Solid> solid_of(const StructureCase& given) {
+  Material material{given.young, given.poisson, given.density, Law::linear};
+  if (given.law == "neo_hookean") material.law = Law::neo_hookean;
+  SolidOptions options;
+  if (given.element == "full") options.element = ElementKind::full;
+  if (given.element == "mean_dilatation") options.element = ElementKind::mean_dilatation;
+  if (given.kinematics == "small") options.kinematics = Kinematics::small;
+  if (given.kinematics == "total_lagrangian") options.kinematics = Kinematics::total_lagrangian;
+  if (given.plane == "stress") options.plane = Plane::stress;
+  options.thickness = given.depth;
+  return built_at(given.place, [&] { return std::make_unique<Solid>(given.mesh, material, options); });
+}
+
+/// A formula of t that can be copied, as std::function wants it.
+std::function<double(double)> of_time(const NumberFormula& formula) {
+  const auto compiled = std::make_shared<Formula>(formula.text, formula.place, Variables::time);
+  return [compiled](double t) { return (*compiled)(0, 0, 0, t); };
+}
+
+std::vector<int> nodes_of(const StructureCase& given, const SupportCase& support) {
+  if (!support.part.empty()) return find_part(given.mesh, support.part)->nodes;
+  std::vector<int> nodes;
+  for (int i = 0; i < static_cast<int>(given.mesh.nodes.size()); ++i) {
+    const Point& x = given.mesh.nodes[i];
+    bool inside = true;
+    for (int d = 0; d < 3; ++d) {
+      const bool bounded = support.max[d] > support.min[d];  // a 2-D scene says nothing of z
+      inside = inside && (!bounded || (x[d] >= support.min[d] && x[d] <= support.max[d]));
+    }
+    if (inside) nodes.push_back(i);
+  }
+  require_at(support.place, !nodes.empty(), "no node of \"", given.name, "\" lies in the box of this support");
+  return nodes;
+}
+
+Supports supports_of(const StructureCase& given) {
+  Supports supports;
+  for (const SupportCase& support : given.supports) {
+    const std::vector<int> nodes = nodes_of(given, support);
+    for (const int axis : support.axes) {
+      if (support.displacement)
+        move(supports, given.mesh.dim, nodes, axis, of_time(*support.displacement));
+      else
+        hold(supports, given.mesh.dim, nodes, axis);
+    }
+  }
+  return supports;
+}
+
+FieldAt field_of(const NumberFormula& formula) {
+  const auto compiled = std::make_shared<Formula>(formula.text, formula.place);
+  return [compiled](const Point& x) { return (*compiled)(x[0], x[1], x[2], 0); };
+}
+
+VectorAt vector_of(const VectorFormula& formulas) {
+  const auto compiled = std::make_shared<std::array<Formula, 3>>(compile(formulas.text, formulas.place));
+  return [compiled](const Point& x) {
+    Point value{};
+    for (std::size_t d = 0; d < 3; ++d) value[d] = (*compiled)[d](x[0], x[1], x[2], 0);
+    return value;
+  };
+}
+
+double area_of(const Solid& solid, const std::vector<Facet>& facets) {
+  const Eigen::VectorXd f = traction_pattern(solid, facets, [](const Point&) { return Point{1, 0, 0}; });
+  double area = 0;
+  for (Eigen::Index i = 0; i < f.size(); i += solid.dim()) area += f[i];
+  return area;
+}
+
+/// The force of a load at factor 1; that of a part without facets is shared evenly by its nodes.
+Eigen::VectorXd pattern_of(const Solid& solid, const StructureLoadCase& load) {
+  const MeshPart& part = *find_part(solid.mesh(), load.part);
+  if (load.kind == "pressure") return pressure_pattern(solid, part.facets, field_of(load.pressure));
+  const VectorAt vector = vector_of(load.vector);
+  if (load.kind == "traction") return traction_pattern(solid, part.facets, vector);
+  if (!part.facets.empty()) {
+    const double area = area_of(solid, part.facets);
+    return traction_pattern(solid, part.facets, [&](const Point& x) {
+      Point force = vector(x);
+      for (double& component : force) component /= area;
+      return force;
+    });
+  }
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(solid.unknowns());
+  for (const int node : part.nodes) {
+    Point force = vector(solid.mesh().nodes[node]);
+    for (double& component : force) component /= static_cast<double>(part.nodes.size());
+    f += nodal_pattern(solid, node, force);
+  }
+  return f;
+}
+
+Loads loads_of(const Scene& scene, const Solid& solid, const StructureCase& given) {
+  Loads loads;
+  if (given.weight) loads.add(gravity_pattern(solid, scene.gravity));
+  for (const StructureLoadCase& load : given.loads) {
+    const auto factor = of_time(load.factor);
+    const bool steady = Formula(load.factor.text, load.factor.place, Variables::time).constant();
+    if (load.follows) {
+      const double pressure = Formula(load.pressure.text, load.pressure.place)(0, 0, 0, 0);
+      const auto follower = [factor, pressure](double t) { return pressure * factor(t); };
+      loads.add_follower(find_part(given.mesh, load.part)->facets, follower);
+    } else if (steady) {
+      loads.add(factor(0) * pattern_of(solid, load));
+    } else {
+      loads.add(pattern_of(solid, load), factor);
+    }
+  }
+  return loads;
+}
+
+Eigen::VectorXd at_nodes(const Solid& solid, const VectorFormula& formulas) {
+  const VectorAt value = vector_of(formulas);
+  Eigen::VectorXd all(solid.unknowns());
+  for (int i = 0; i < static_cast<int>(solid.mesh().nodes.size()); ++i) {
+    const Point at = value(solid.mesh().nodes[i]);
+    for (int d = 0; d < solid.dim(); ++d) all[solid.dim() * i + d] = at[d];
+  }
+  return all;
+}
+
+bool is_loaded(const Scene& scene, const StructureCase& given) {
+  return !given.loads.empty() || (given.weight && scene.gravity != Point{0, 0, 0});
+}
+
+double distance2(const Point& a, const Point& b) {
+  double sum = 0;
+  for (std::size_t d = 0; d < 3; ++d) sum += (a[d] - b[d]) * (a[d] - b[d]);
+  return sum;
+}
+
+/// The nodes that are nearest to a place: all that are as near as the nearest.
+std::vector<int> nearest_nodes(const SolidMesh& mesh, const Point& place) {
+  constexpr double as_near = 1e-6;
+  double least = 1e300;
+  for (const Point& x : mesh.nodes) least = std::min(least, distance2(x, place));
+  std::vector<int> nodes;
+  for (int i = 0; i < static_cast<int>(mesh.nodes.size()); ++i)
+    if (distance2(mesh.nodes[i], place) <= least * (1 + as_near) + 1e-24) nodes.push_back(i);
+  return nodes;
+}
+
+double mean_at(const Solid& solid, const Eigen::VectorXd& values, const ProbeCase& probe) {
+  const auto nodes = nearest_nodes(solid.mesh(), probe.point);
+  const int axis = probe.component.front() - 'x';
+  double sum = 0;
+  for (const int node : nodes) sum += values[solid.dim() * node + axis];
+  return sum / static_cast<double>(nodes.size());
+}
+
+double mises(const std::array<double, 6>& s) {
+  const double a = s[0] - s[1], b = s[1] - s[2], c = s[2] - s[0];
+  return std::sqrt((a * a + b * b + c * c) / 2 + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
+}
+
+std::vector<Point> rows_of(const Solid& solid, const Eigen::VectorXd& values) {
+  std::vector<Point> rows(solid.mesh().nodes.size());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (int d = 0; d < solid.dim(); ++d) rows[i][d] = values[solid.dim() * static_cast<int>(i) + d];
+  return rows;
+}
+
+}  // namespace
+
+Structure::Structure(const Scene& scene, const StructureCase& given, double step)
+    : given_(given), solid_(solid_of(given)), supports_(supports_of(given)), loaded_(is_loaded(scene, given)) {
+  const MarchOptions options = march_options(step);
+  march_ = built_at(given_.place, [&] {
+    return std::make_unique<March>(*solid_, supports_, loads_of(scene, *solid_, given_), options,
+                                   at_nodes(*solid_, given_.displacement), at_nodes(*solid_, given_.velocity));
+  });
+}
+
+MarchOptions Structure::march_options(double step) {
+  constexpr double most_substeps = 1e9;
+  critical_ = critical_step(*solid_, supports_);
+  require_at(given_.time_step_place, given_.time_step < critical_, "time_step = ", given_.time_step,
+             " s is not below the critical step of \"", given_.name, "\", ", critical_,
+             " s (2/omega_max): the structure would explode; take less, or leave it out for ", given_.safety, " of it");
+  const double longest = given_.time_step > 0 ? given_.time_step : given_.safety * critical_;
+  const double substeps = std::isfinite(longest) ? std::ceil(step / longest * (1 - 1e-9)) : 1;
+  require_at(given_.time_step_place, substeps <= most_substeps, "substeps of ", longest, " s make ", substeps,
+             " in one step of ", step, " s; take a longer time_step, or a coarser mesh");
+  substeps_ = std::max(1, static_cast<int>(substeps));
+  substep_ = step / substeps_;
+  damping_ = given_.damping;
+  if (given_.damping_ratio) {
+    const double frequency =
+        given_.damping_frequency > 0 ? given_.damping_frequency : lowest_modes(*solid_, supports_, 1).frequencies[0];
+    damping_ = damping_of(*given_.damping_ratio, frequency);
+  }
+  return {substep_, damping_, 0};
+}
+
+double Structure::stress_at(const Point& place, const std::string& component) const {
+  const SolidMesh& mesh = solid_->mesh();
+  int nearest = 0;
+  double least = 1e300;
+  for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e) {
+    Point centre{};
+    for (int a = 0; a < mesh.nodes_per_element(); ++a)
+      for (std::size_t d = 0; d < 3; ++d) centre[d] += mesh.nodes[mesh.elements[e][a]][d] / mesh.nodes_per_element();
+    if (distance2(centre, place) >= least) continue;
+    least = distance2(centre, place);
+    nearest = e;
+  }
+  const std::array<double, 6> stress = solid_->stress(march_->displacement(), nearest);
+  if (component == "mises") return mises(stress);
+  const std::array<std::string, 6> names{"xx", "yy", "zz", "xy", "yz", "xz"};
+  return stress[std::find(names.begin(), names.end(), component) - names.begin()];
+}
+
+double Structure::sample(const ProbeCase& probe) const {
+  if (probe.kind == "structure_displacement") return mean_at(*solid_, march_->displacement(), probe);
+  if (probe.kind == "structure_velocity") return mean_at(*solid_, march_->velocity(), probe);
+  if (probe.kind == "structure_stress") return stress_at(probe.point, probe.component);
+  if (probe.kind == "structure_reaction") {
+    std::vector<int> nodes(solid_->mesh().nodes.size());
+    std::iota(nodes.begin(), nodes.end(), 0);
+    if (!probe.part.empty()) nodes = find_part(solid_->mesh(), probe.part)->nodes;
+    double sum = 0;
+    for (const int node : nodes) sum += march_->reaction()[solid_->dim() * node + probe.component.front() - 'x'];
+    return sum;
+  }
+  expect(probe.kind == "structure_energy");
+  const Energies energies = march_->energies();
+  if (probe.component == "kinetic") return energies.kinetic;
+  if (probe.component == "strain") return energies.strain;
+  if (probe.component == "lost") return energies.lost;
+  if (probe.component == "loads") return energies.loads;
+  return probe.component == "supports" ? energies.supports : energies.balance();
+}
+
+SolidPicture Structure::picture() const {
+  return {given_.name,
+          &solid_->mesh(),
+          {march_->time(),
+           rows_of(*solid_, march_->displacement()),
+           rows_of(*solid_, march_->velocity()),
+           solid_->stress(march_->displacement()),
+           {},
+           {}}};
+}
+
+std::vector<std::string> Structure::plan() const {
+  const SolidMesh& mesh = solid_->mesh();
+  std::vector<std::string> lines;
+  lines.push_back(fmt::format("structure {}: {} nodes, {} {} ({}, {}), mass {:.6g} kg", given_.name, mesh.nodes.size(),
+                              mesh.elements.size(), mesh.dim == 3 ? "hexahedra" : "quadrilaterals", given_.element,
+                              given_.kinematics, solid_->mass().sum() / solid_->dim()));
+  lines.push_back(fmt::format("          {} substeps of {:.6g} s in a step, {:.2f} of the critical {:.4g} s", substeps_,
+                              substep_, substep_ / critical_, critical_));
+  if (supports_.held.empty() && loaded_)
+    lines.push_back(fmt::format(
+        "warning   {} is held nowhere and loaded: it will fly away -> clamp, [[structure.support]]", given_.name));
+  constexpr int shown = 3;
+  const Modes modes = lowest_modes(*solid_, supports_, shown);
+  for (Eigen::Index i = 0; i < modes.frequencies.size(); ++i) {
+    const double f = modes.frequencies[i];
+    if (f <= 0) continue;
+    int axis = 0;
+    std::array<double, 3> share{};
+    for (int d = 0; d < solid_->dim(); ++d) share[d] = share_along(*solid_, modes.shapes.col(i), d);
+    for (int d = 1; d < solid_->dim(); ++d) axis = share[d] > share[axis] ? d : axis;
+    const double ratio = damping_ / (4 * std::acos(-1.0) * f);
+    lines.push_back(fmt::format("          f{} = {:.5g} Hz dry, {:.0f} % along {}, damped with {:.3g} of critical",
+                                i + 1, f, 100 * share[axis], axis_names[axis], ratio));
+  }
+  return lines;
+}
+
+ProbeHead structure_probe_head(const ProbeCase& probe) {
+  if (probe.kind == "structure_displacement") return {"displacement_" + probe.component, "m"};
+  if (probe.kind == "structure_velocity") return {"velocity_" + probe.component, "m/s"};
+  if (probe.kind == "structure_stress") return {"stress_" + probe.component, "Pa"};
+  if (probe.kind == "structure_reaction") return {"reaction_" + probe.component, "N"};
+  return {"energy_" + probe.component, "J"};
+}
+
+}  // namespace greenwater
