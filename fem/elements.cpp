@@ -11,6 +11,9 @@
 namespace greenwater::element {
 namespace {
 
+/// Waking threads for fewer takes longer than they save.
+[[maybe_unused]] constexpr int packs_for_threads = 256;
+
 /// Tells which elements are equal up to a translation, within round-off of coordinates. Looks back at a few shapes only,
 /// which is enough for structured meshes and costs nothing for others.
 template <int Dim>
@@ -63,33 +66,37 @@ class PackedElements : public Elements {
     for (std::size_t i = 0; i < order.size(); i += lanes) {
       add_pack(mesh, &order[i], static_cast<int>(std::min<std::size_t>(lanes, order.size() - i)));
     }
+    forces_.resize(packs_.size());
   }
 
-  int force_count() const override { return static_cast<int>(packs_.size()) * unknowns * lanes; }
   int place_of(int element, int node) const override {
     return (slot_[element] / lanes * unknowns + dim * node) * lanes + slot_[element] % lanes;
   }
 
-  void forces(const double* u, double* forces) const override {
-    for (const Pack& pack : packs_) {
-      Octet local[nodes][dim], f[nodes][dim];
+  const double* forces(const double* u) override {
+    const int count = static_cast<int>(packs_.size());
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) if (count >= packs_for_threads)
+#endif
+    for (int p = 0; p < count; ++p) {
+      const Pack& pack = packs_[p];
+      Local local;
       gather(pack, u, local);
       if (pack.shared)
-        formula_.force(ones_[pack.data], local, f);
+        formula_.force(ones_[pack.data], local.x, forces_[p].x);
       else
-        formula_.force(eights_[pack.data], local, f);
-      std::memcpy(forces, f, sizeof f);
-      forces += unknowns * lanes;
+        formula_.force(eights_[pack.data], local.x, forces_[p].x);
     }
+    return &forces_[0].x[0][0][0];
   }
 
   double energy(const double* u) const override {
     double sum = 0;
     for (const Pack& pack : packs_) {
-      Octet local[nodes][dim];
+      Local local;
       gather(pack, u, local);
       const Octet w =
-          pack.shared ? formula_.energy(ones_[pack.data], local) : formula_.energy(eights_[pack.data], local);
+          pack.shared ? formula_.energy(ones_[pack.data], local.x) : formula_.energy(eights_[pack.data], local.x);
       for (int l = 0; l < pack.count; ++l) sum += w[l];
     }
     return sum;
@@ -125,6 +132,10 @@ class PackedElements : public Elements {
     int first[nodes][lanes] = {};  // unknown of the nodes
   };
 
+  struct Local {
+    Octet x[nodes][dim];  // displacements, or forces
+  };
+
   void add_pack(const SolidMesh& mesh, const std::pair<int, int>* members, int count) {
     Pack pack;
     pack.count = count;
@@ -157,10 +168,16 @@ class PackedElements : public Elements {
     for (std::size_t i = 0; i < sizeof(One); i += sizeof(double)) std::memcpy(to + lanes * i, from + i, sizeof(double));
   }
 
-  static void gather(const Pack& pack, const double* u, Octet (&local)[nodes][dim]) {
-    for (int a = 0; a < nodes; ++a)
-      for (int d = 0; d < dim; ++d)
-        for (int l = 0; l < lanes; ++l) local[a][d][l] = u[pack.first[a][l] + d];
+  static void gather(const Pack& pack, const double* u, Local& local) {
+    for (int a = 0; a < nodes; ++a) {
+      const int* at = pack.first[a];
+      for (int d = 0; d < dim; ++d) {
+        const double* from = u + d;
+        // Not lane by lane, as a register that is written in parts is read late.
+        local.x[a][d] = Octet{from[at[0]], from[at[1]], from[at[2]], from[at[3]],
+                              from[at[4]], from[at[5]], from[at[6]], from[at[7]]};
+      }
+    }
   }
 
   Formula formula_;
@@ -169,6 +186,7 @@ class PackedElements : public Elements {
   std::vector<Pack> packs_;
   std::vector<One> ones_;
   std::vector<Eight> eights_;
+  std::vector<Local> forces_;  // of the packs
   int last_shape_ = -1;
 };
 

@@ -13,12 +13,10 @@ class Elements {
  public:
   virtual ~Elements() = default;
 
-  /// How many numbers forces() writes.
-  virtual int force_count() const = 0;
+  /// The force on every node of every element at u [N], which the next call overwrites.
+  virtual const double* forces(const double* u) = 0;
   /// Where in them the force on a node of an element begins; those along the other axes follow `lanes` apart.
   virtual int place_of(int element, int node) const = 0;
-  /// The force on every node of every element at u [N].
-  virtual void forces(const double* u, double* forces) const = 0;
   virtual double energy(const double* u) const = 0;
   /// d2W/du2 of one element, row by row [N/m].
   virtual void tangent(const SolidMesh& mesh, int element, const double* u, double* k) const = 0;

@@ -7,6 +7,9 @@
 namespace greenwater {
 namespace {
 
+/// Waking threads for fewer takes longer than they save.
+[[maybe_unused]] constexpr int nodes_for_threads = 4000;
+
 void check(const SolidMesh& mesh, const Material& material, const SolidOptions& options) {
   check(material);
   require(!mesh.elements.empty(), "the mesh of the structure has no elements");
@@ -43,6 +46,21 @@ void add_mass(const SolidMesh& mesh, double density, double thickness, Eigen::Ve
   }
 }
 
+/// f = the sum of the elements' parts at each node. Nodes gather, so that threads need not wait for each other.
+template <int Dim>
+void add_parts(const double* parts, const std::vector<int>& first, const std::vector<int>& part, double* f) {
+  const int nodes = static_cast<int>(first.size()) - 1;
+#ifdef _OPENMP
+#pragma omp parallel for schedule(static) if (nodes >= nodes_for_threads)
+#endif
+  for (int n = 0; n < nodes; ++n) {
+    double sum[Dim] = {};
+    for (int i = first[n]; i < first[n + 1]; ++i)
+      for (int d = 0; d < Dim; ++d) sum[d] += parts[part[i] + d * element::lanes];
+    for (int d = 0; d < Dim; ++d) f[Dim * n + d] = sum[d];
+  }
+}
+
 }  // namespace
 
 Solid::Solid(SolidMesh mesh, const Material& material, const SolidOptions& options)
@@ -63,7 +81,6 @@ Solid::Solid(SolidMesh mesh, const Material& material, const SolidOptions& optio
   const element::Rules rules{plane_stress ? lame_plane_stress(material_) : lame(material_), material_.law,
                              options_.element, options_.plane};
   elements_ = element::make_elements(mesh_, rules, options_.kinematics, options_.thickness);
-  element_forces_ = Eigen::VectorXd::Zero(elements_->force_count());
   link_nodes();
 }
 
@@ -85,15 +102,11 @@ void Solid::link_nodes() {
 
 void Solid::internal_force(const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
   expect(u.size() == unknowns() && f.size() == unknowns());
-  elements_->forces(u.data(), element_forces_.data());
-  const double* parts = element_forces_.data();
-  const int dims = dim(), nodes = static_cast<int>(mesh_.nodes.size());
-  for (int n = 0; n < nodes; ++n) {
-    double sum[3] = {};
-    for (int i = first_part_[n]; i < first_part_[n + 1]; ++i)
-      for (int d = 0; d < dims; ++d) sum[d] += parts[part_[i] + d * element::lanes];
-    for (int d = 0; d < dims; ++d) f[dims * n + d] = sum[d];
-  }
+  const double* parts = elements_->forces(u.data());
+  if (dim() == 2)
+    add_parts<2>(parts, first_part_, part_, f.data());
+  else
+    add_parts<3>(parts, first_part_, part_, f.data());
 }
 
 double Solid::strain_energy(const Eigen::VectorXd& u) const {

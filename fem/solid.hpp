@@ -78,9 +78,8 @@ class Solid {
   SolidOptions options_;
   Eigen::VectorXd mass_;
   std::unique_ptr<element::Elements> elements_;
-  // Where in element_forces_ the parts of a node begin: those of node i from first_part_[i] on.
+  // Where in the forces of elements the parts of a node begin: those of node i from first_part_[i] on.
   std::vector<int> first_part_, part_;
-  mutable Eigen::VectorXd element_forces_;
 };
 
 }  // namespace greenwater
