@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "fem/linear_element.hpp"
@@ -12,7 +13,7 @@ namespace greenwater::element {
 namespace {
 
 /// Waking threads for fewer takes longer than they save.
-[[maybe_unused]] constexpr int packs_for_threads = 256;
+[[maybe_unused]] constexpr int groups_for_threads = 256;
 
 /// Tells which elements are equal up to a translation, within round-off of coordinates. Looks back at a few shapes only,
 /// which is enough for structured meshes and costs nothing for others.
@@ -52,8 +53,8 @@ class PackedElements : public Elements {
   static constexpr int nodes = Formula::nodes;
   static constexpr int unknowns = dim * nodes;
   using One = typename Formula::template Data<double>;
-  using Eight = typename Formula::template Data<Octet>;
-  static_assert(sizeof(Eight) == lanes * sizeof(One));
+  using Several = typename Formula::template Data<Pack>;
+  static_assert(sizeof(Several) == lanes * sizeof(One));
 
   PackedElements(const SolidMesh& mesh, const Formula& formula, double thickness)
       : formula_(formula), thickness_(thickness), slot_(mesh.elements.size()) {
@@ -64,9 +65,9 @@ class PackedElements : public Elements {
     }
     std::sort(order.begin(), order.end());
     for (std::size_t i = 0; i < order.size(); i += lanes) {
-      add_pack(mesh, &order[i], static_cast<int>(std::min<std::size_t>(lanes, order.size() - i)));
+      add_group(mesh, &order[i], static_cast<int>(std::min<std::size_t>(lanes, order.size() - i)));
     }
-    forces_.resize(packs_.size());
+    forces_.resize(groups_.size());
   }
 
   int place_of(int element, int node) const override {
@@ -74,30 +75,30 @@ class PackedElements : public Elements {
   }
 
   const double* forces(const double* u) override {
-    const int count = static_cast<int>(packs_.size());
+    const int count = static_cast<int>(groups_.size());
 #ifdef _OPENMP
-#pragma omp parallel for schedule(static) if (count >= packs_for_threads)
+#pragma omp parallel for schedule(static) if (count >= groups_for_threads)
 #endif
     for (int p = 0; p < count; ++p) {
-      const Pack& pack = packs_[p];
+      const Group& group = groups_[p];
       Local local;
-      gather(pack, u, local);
-      if (pack.shared)
-        formula_.force(ones_[pack.data], local.x, forces_[p].x);
+      gather(group, u, local);
+      if (group.shared)
+        formula_.force(ones_[group.data], local.x, forces_[p].x);
       else
-        formula_.force(eights_[pack.data], local.x, forces_[p].x);
+        formula_.force(several_[group.data], local.x, forces_[p].x);
     }
     return &forces_[0].x[0][0][0];
   }
 
   double energy(const double* u) const override {
     double sum = 0;
-    for (const Pack& pack : packs_) {
+    for (const Group& group : groups_) {
       Local local;
-      gather(pack, u, local);
-      const Octet w =
-          pack.shared ? formula_.energy(ones_[pack.data], local.x) : formula_.energy(eights_[pack.data], local.x);
-      for (int l = 0; l < pack.count; ++l) sum += w[l];
+      gather(group, u, local);
+      const Pack w =
+          group.shared ? formula_.energy(ones_[group.data], local.x) : formula_.energy(several_[group.data], local.x);
+      for (int l = 0; l < group.count; ++l) sum += w[l];
     }
     return sum;
   }
@@ -125,67 +126,66 @@ class PackedElements : public Elements {
   }
 
  private:
-  struct Pack {
+  struct Group {
     bool shared = true;            // all of one shape
-    int data = 0;                  // in ones_ or eights_
+    int data = 0;                  // in ones_ or several_
     int count = 0;                 // lanes that have an element; the others repeat the last
     int first[nodes][lanes] = {};  // unknown of the nodes
   };
 
   struct Local {
-    Octet x[nodes][dim];  // displacements, or forces
+    Pack x[nodes][dim];  // displacements, or forces
   };
 
-  void add_pack(const SolidMesh& mesh, const std::pair<int, int>* members, int count) {
-    Pack pack;
-    pack.count = count;
-    pack.shared = members[0].first == members[count - 1].first;
+  void add_group(const SolidMesh& mesh, const std::pair<int, int>* members, int count) {
+    Group group;
+    group.count = count;
+    group.shared = members[0].first == members[count - 1].first;
     for (int l = 0; l < lanes; ++l) {
       const int element = members[std::min(l, count - 1)].second;
-      if (l < count) slot_[element] = static_cast<int>(packs_.size()) * lanes + l;
-      for (int a = 0; a < nodes; ++a) pack.first[a][l] = dim * mesh.elements[element][a];
+      if (l < count) slot_[element] = static_cast<int>(groups_.size()) * lanes + l;
+      for (int a = 0; a < nodes; ++a) group.first[a][l] = dim * mesh.elements[element][a];
     }
-    if (pack.shared) {
+    if (group.shared) {
       if (members[0].first != last_shape_) ones_.push_back(data_of(mesh, members[0].second));
       last_shape_ = members[0].first;
-      pack.data = static_cast<int>(ones_.size()) - 1;
+      group.data = static_cast<int>(ones_.size()) - 1;
     } else {
-      pack.data = static_cast<int>(eights_.size());
-      eights_.emplace_back();
+      group.data = static_cast<int>(several_.size());
+      several_.emplace_back();
       for (int l = 0; l < lanes; ++l)
-        put_lane(eights_.back(), l, data_of(mesh, members[std::min(l, count - 1)].second));
+        put_lane(several_.back(), l, data_of(mesh, members[std::min(l, count - 1)].second));
     }
-    packs_.push_back(pack);
+    groups_.push_back(group);
   }
 
   One data_of(const SolidMesh& mesh, int element) const {
     return formula_.make(geometry_of<dim>(mesh, element, thickness_));
   }
 
-  static void put_lane(Eight& all, int lane, const One& one) {
+  static void put_lane(Several& all, int lane, const One& one) {
     const auto* from = reinterpret_cast<const char*>(&one);
     auto* to = reinterpret_cast<char*>(&all) + lane * sizeof(double);
     for (std::size_t i = 0; i < sizeof(One); i += sizeof(double)) std::memcpy(to + lanes * i, from + i, sizeof(double));
   }
 
-  static void gather(const Pack& pack, const double* u, Local& local) {
-    for (int a = 0; a < nodes; ++a) {
-      const int* at = pack.first[a];
-      for (int d = 0; d < dim; ++d) {
-        const double* from = u + d;
-        // Not lane by lane, as a register that is written in parts is read late.
-        local.x[a][d] = Octet{from[at[0]], from[at[1]], from[at[2]], from[at[3]],
-                              from[at[4]], from[at[5]], from[at[6]], from[at[7]]};
-      }
-    }
+  static void gather(const Group& group, const double* u, Local& local) {
+    for (int a = 0; a < nodes; ++a)
+      for (int d = 0; d < dim; ++d) local.x[a][d] = gather(u + d, group.first[a], std::make_index_sequence<lanes>());
+  }
+
+  /// Not lane by lane, as a register that is written in parts is read late.
+  template <std::size_t... L>
+  static Pack gather(const double* from, const int* at, std::index_sequence<L...>) {
+    return Pack{from[at[L]]...};
   }
 
   Formula formula_;
   double thickness_;
-  std::vector<int> slot_;  // of an element: pack times lanes plus lane
-  std::vector<Pack> packs_;
+  std::vector<int> slot_;  // of an element: group times lanes plus lane
+  std::vector<Group> groups_;
   std::vector<One> ones_;
-  std::vector<Eight> eights_;
+  std::vector<Several> several_;
   std::vector<Local> forces_;  // of the packs
   int last_shape_ = -1;
 };

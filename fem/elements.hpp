@@ -1,11 +1,11 @@
 #pragma once
-// All elements of a body, eight at a time.
+// All elements of a body, as many at a time as a register holds.
 
 #include <array>
 #include <memory>
 
 #include "fem/element_rules.hpp"
-#include "fem/octet.hpp"
+#include "fem/pack.hpp"
 
 namespace greenwater::element {
 

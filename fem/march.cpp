@@ -5,21 +5,21 @@
 
 #include "core/check.hpp"
 #include "fem/critical_step.hpp"
-#include "fem/octet.hpp"
+#include "fem/pack.hpp"
 
 namespace greenwater {
 namespace {
 
 using element::lanes;
-using element::Octet;
+using element::Pack;
 
-Octet load(const double* from) {
-  Octet x;
+Pack load(const double* from) {
+  Pack x;
   std::memcpy(&x, from, sizeof x);
   return x;
 }
 
-double sum_of(const Octet& x) {
+double sum_of(const Pack& x) {
   double sum = 0;
   for (int l = 0; l < lanes; ++l) sum += x[l];
   return sum;
@@ -50,12 +50,12 @@ void step_at(const StepArrays& a, Eigen::Index i, const Read& read, const Write&
 }
 
 Powers step_all(const StepArrays& a, Eigen::Index count) {
-  Octet loads{}, lost{};
+  Pack loads{}, lost{};
   Powers powers;
   Eigen::Index i = 0;
   for (; i + lanes <= count; i += lanes) {
     step_at(
-        a, i, load, [](double* to, const Octet& x) { std::memcpy(to, &x, sizeof x); }, loads, lost);
+        a, i, load, [](double* to, const Pack& x) { std::memcpy(to, &x, sizeof x); }, loads, lost);
   }
   const auto read = [](const double* from) { return *from; };
   for (; i < count; ++i) {

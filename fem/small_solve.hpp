@@ -1,5 +1,5 @@
 #pragma once
-// Solution of a few symmetric equations, in any of the numbers of fem/octet.hpp.
+// Solution of a few symmetric equations, in any of the numbers of fem/pack.hpp.
 
 namespace greenwater::element {
 

@@ -1,7 +1,7 @@
 #pragma once
-// Small tensors of any of the numbers of fem/octet.hpp.
+// Small tensors of any of the numbers of fem/pack.hpp.
 
-#include "fem/octet.hpp"
+#include "fem/pack.hpp"
 
 namespace greenwater::element {
 

@@ -198,7 +198,7 @@ TEST_CASE("lumped mass adds up to that of the body", "[unit][structure]") {
 }
 
 TEST_CASE("one body or a row of them, shared shapes or not: the same forces", "[unit][structure]") {
-  // 7, 8, 9 elements: packs with empty lanes, full ones, and a second; shifted a little, so that nothing is shared.
+  // Counts about a multiple of the lanes: packs with empty lanes, full ones, and a second; shifted a little, so that nothing is shared.
   for (const int count : {1, 7, 8, 9, 17}) {
     const SolidMesh plain = box_mesh(3, {0, 0, 0}, {1.0 * count, 1, 1}, {count, 1, 1});
     SolidMesh shifted = plain;

@@ -1,19 +1,26 @@
 #pragma once
 // What the formulas of an element are written in. They are templates of the number T, so that the same text works on one
-// element (double), on eight side by side in the lanes of a vector register (Octet), and on one with its derivatives
-// along eight directions (Slope), which gives tangents that are exact without a line of algebra.
+// element (double), on several side by side in the lanes of a vector register (Pack), and on one with its derivatives
+// along several directions (Slope), which gives tangents that are exact without a line of algebra.
 
 #include <cmath>
 
 namespace greenwater::element {
 
+/// As many numbers as a register has.
+#if defined(__AVX512F__)
 constexpr int lanes = 8;
-typedef double Octet __attribute__((vector_size(lanes * sizeof(double))));
+#elif defined(__AVX__)
+constexpr int lanes = 4;
+#else
+constexpr int lanes = 2;
+#endif
+typedef double Pack __attribute__((vector_size(lanes * sizeof(double))));
 
-/// A value and its derivatives along eight directions.
+/// A value and its derivatives along as many directions as there are lanes.
 struct Slope {
   double value = 0;
-  Octet slope{};
+  Pack slope{};
   Slope& operator+=(const Slope& b) { return value += b.value, slope += b.slope, *this; }
   Slope& operator-=(const Slope& b) { return value -= b.value, slope -= b.slope, *this; }
   Slope& operator+=(double b) { return value += b, *this; }
@@ -36,8 +43,8 @@ inline Slope operator/(double a, const Slope& b) { return {a / b.value, -a / (b.
 /// Natural logarithm.
 inline double log_of(double a) { return std::log(a); }
 inline Slope log_of(const Slope& a) { return {std::log(a.value), a.slope / a.value}; }
-inline Octet log_of(const Octet& a) {
-  Octet b{};
+inline Pack log_of(const Pack& a) {
+  Pack b{};
   for (int l = 0; l < lanes; ++l) b[l] = std::log(a[l]);
   return b;
 }
@@ -48,8 +55,8 @@ inline Slope power_of(const Slope& a, double p) {
   const double power = std::pow(a.value, p);
   return {power, p * power / a.value * a.slope};
 }
-inline Octet power_of(const Octet& a, double p) {
-  Octet b{};
+inline Pack power_of(const Pack& a, double p) {
+  Pack b{};
   for (int l = 0; l < lanes; ++l) b[l] = std::pow(a[l], p);
   return b;
 }
@@ -57,7 +64,7 @@ inline Octet power_of(const Octet& a, double p) {
 /// The largest magnitude of all lanes; what is not a number counts as nothing.
 inline double largest(double a) { return std::abs(a); }
 inline double largest(const Slope& a) { return std::abs(a.value); }
-inline double largest(const Octet& a) {
+inline double largest(const Pack& a) {
   double most = 0;
   for (int l = 0; l < lanes; ++l) most = std::abs(a[l]) > most ? std::abs(a[l]) : most;
   return most;
