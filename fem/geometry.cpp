@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/check.hpp"
 #include "fem/tensor.hpp"
@@ -23,31 +24,61 @@ Point<Dim> corner(int a) {
   return xi;
 }
 
+/// Shape functions and their slopes at one point of the reference element.
 template <int Dim>
-double shape(int a, const Point<Dim>& xi) {
-  double n = 1;
-  for (int d = 0; d < Dim; ++d) n *= (1 + corner<Dim>(a)[d] * xi[d]) / 2;
-  return n;
+struct Functions {
+  Point<Dim> xi;
+  double shape[1 << Dim];       // N_a
+  double slope[1 << Dim][Dim];  // dN_a/dxi_k
+
+  explicit Functions(const Point<Dim>& at) : xi(at) {
+    for (int a = 0; a < 1 << Dim; ++a) {
+      const Point<Dim> c = corner<Dim>(a);
+      shape[a] = 1;
+      for (int k = 0; k < Dim; ++k) {
+        shape[a] *= (1 + c[k] * xi[k]) / 2;
+        slope[a][k] = c[k] / 2;
+        for (int d = 0; d < Dim; ++d) slope[a][k] *= d == k ? 1 : (1 + c[d] * xi[d]) / 2;
+      }
+    }
+  }
+};
+
+/// At the centre, and at all corners shrunk towards it: 1 keeps them, 1 / sqrt(3) makes them the points of Gauss.
+template <int Dim>
+const Functions<Dim>& at_centre() {
+  static const Functions<Dim> functions{Point<Dim>{}};
+  return functions;
 }
 
-/// dN_a/dxi_k
 template <int Dim>
-double slope(int a, int k, const Point<Dim>& xi) {
-  double n = corner<Dim>(a)[k] / 2;
-  for (int d = 0; d < Dim; ++d) {
-    if (d != k) n *= (1 + corner<Dim>(a)[d] * xi[d]) / 2;
+std::vector<Functions<Dim>> at_corners(double shrink) {
+  std::vector<Functions<Dim>> all;
+  for (int a = 0; a < 1 << Dim; ++a) {
+    Point<Dim> xi = corner<Dim>(a);
+    for (double& x : xi) x *= shrink;
+    all.emplace_back(xi);
   }
-  return n;
+  return all;
 }
 
 /// dX/dxi
 template <int Dim>
-Tensor<Dim, double> jacobian(const Geometry<Dim>& g, const Point<Dim>& xi) {
+Tensor<Dim, double> jacobian(const Geometry<Dim>& g, const Functions<Dim>& n) {
   Tensor<Dim, double> j;
   for (int a = 0; a < g.nodes; ++a)
     for (int i = 0; i < Dim; ++i)
-      for (int k = 0; k < Dim; ++k) j(i, k) += g.place[a][i] * slope<Dim>(a, k, xi);
+      for (int k = 0; k < Dim; ++k) j(i, k) += g.place[a][i] * n.slope[a][k];
   return j;
+}
+
+/// dN_a/dX from the cofactors and the determinant of the Jacobian.
+template <int Dim>
+void set_gradients(const Functions<Dim>& n, const Tensor<Dim, double>& cofactor, double det,
+                   double (&gradient)[1 << Dim][Dim]) {
+  for (int a = 0; a < 1 << Dim; ++a)
+    for (int i = 0; i < Dim; ++i)
+      for (int k = 0; k < Dim; ++k) gradient[a][i] += n.slope[a][k] * cofactor(i, k) / det;
 }
 
 std::string place_of(const SolidMesh& mesh, int element) {
@@ -69,39 +100,26 @@ void require_sound(const SolidMesh& mesh, int element, const Tensor<Dim, double>
     for (int i = 0; i < Dim; ++i) square += j(i, k) * j(i, k);
     edges *= std::sqrt(square);
   }
-  // A thousandth: an angle of 0.06 degrees.
-  require(det > 1e-3 * edges, "solid element ", element + 1, " with nodes at ", place_of(mesh, element), " m is ",
-          det < -1e-3 * edges ? "inverted" : "degenerate",
-          Dim == 2 ? ": list its nodes anti-clockwise, and let no angle reach 0 or 180 degrees"
-                   : ": list the four nodes of one side anti-clockwise seen from inside and then those opposite them, "
-                     "and let no angle reach 0 or 180 degrees");
+  if (det > 1e-3 * edges) return;  // an angle of 0.06 degrees
+  throw CaseError(text_of("solid element ", element + 1, " with nodes at ", place_of(mesh, element), " m is ",
+                          det < -1e-3 * edges ? "inverted" : "degenerate",
+                          Dim == 2 ? ": list its nodes anti-clockwise, and let no angle reach 0 or 180 degrees"
+                                   : ": list the four nodes of one side anti-clockwise seen from inside and then those "
+                                     "opposite them, and let no angle reach 0 or 180 degrees"));
 }
 
 template <int Dim>
-void set_centre(Geometry<Dim>& g, const Tensor<Dim, double>& cofactor, double det) {
-  for (int a = 0; a < g.nodes; ++a)
-    for (int i = 0; i < Dim; ++i)
-      for (int k = 0; k < Dim; ++k) g.centre[a][i] += slope<Dim>(a, k, Point<Dim>{}) * cofactor(i, k) / det;
-}
-
-template <int Dim>
-void set_point(Geometry<Dim>& g, int p, const Point<Dim>& xi, double thickness) {
-  const auto j = jacobian<Dim>(g, xi);
-  const auto cofactor = cofactors(j);
-  const double det = determinant(j, cofactor);
+void set_point(Geometry<Dim>& g, int p, const Functions<Dim>& n, double thickness) {
+  const auto j = jacobian(g, n), middle = jacobian(g, at_centre<Dim>());
+  const auto cofactor = cofactors(j), centre = cofactors(middle);
+  const double det = determinant(j, cofactor), ratio = determinant(middle, centre) / det;  // j0/j
   g.weight[p] = det * thickness;
-  for (int a = 0; a < g.nodes; ++a) {
-    g.share[a] += shape<Dim>(a, xi) * g.weight[p];
-    for (int i = 0; i < Dim; ++i)
-      for (int k = 0; k < Dim; ++k) g.gradient[p][a][i] += slope<Dim>(a, k, xi) * cofactor(i, k) / det;
-  }
-  const auto middle = jacobian<Dim>(g, Point<Dim>{});
-  const auto centre = cofactors(middle);
-  const double ratio = determinant(middle, centre) / det;  // j0/j
+  for (int a = 0; a < g.nodes; ++a) g.share[a] += n.shape[a] * g.weight[p];
+  set_gradients(n, cofactor, det, g.gradient[p]);
   for (int k = 0; k < Dim; ++k) {
     double length = 0;
     for (int i = 0; i < Dim; ++i) length += centre(i, k) * centre(i, k);
-    for (int i = 0; i < Dim; ++i) g.mode[p][k][i] = ratio * xi[k] * centre(i, k) / std::sqrt(length);
+    for (int i = 0; i < Dim; ++i) g.mode[p][k][i] = ratio * n.xi[k] * centre(i, k) / std::sqrt(length);
   }
 }
 
@@ -116,14 +134,11 @@ Geometry<Dim> geometry_of(const SolidMesh& mesh, int element, double thickness) 
     for (int a = 0; a < g.nodes; ++a) mean += mesh.nodes[nodes[a]][d] / g.nodes;
     for (int a = 0; a < g.nodes; ++a) g.place[a][d] = mesh.nodes[nodes[a]][d] - mean;
   }
-  for (int a = 0; a < g.nodes; ++a) require_sound(mesh, element, jacobian<Dim>(g, corner<Dim>(a)));
-  const auto centre = jacobian<Dim>(g, Point<Dim>{});
-  set_centre(g, cofactors(centre), determinant(centre, cofactors(centre)));
-  for (int p = 0; p < g.points; ++p) {
-    auto xi = corner<Dim>(p);
-    for (double& x : xi) x /= std::sqrt(3.0);
-    set_point<Dim>(g, p, xi, Dim == 2 ? thickness : 1);
-  }
+  static const auto corners = at_corners<Dim>(1), points = at_corners<Dim>(1 / std::sqrt(3.0));
+  for (const auto& n : corners) require_sound(mesh, element, jacobian(g, n));
+  const auto centre = jacobian(g, at_centre<Dim>()), cofactor = cofactors(centre);
+  set_gradients(at_centre<Dim>(), cofactor, determinant(centre, cofactor), g.centre);
+  for (int p = 0; p < g.points; ++p) set_point(g, p, points[p], Dim == 2 ? thickness : 1);
   return g;
 }
 

@@ -12,7 +12,7 @@
 namespace greenwater {
 namespace {
 
-constexpr double accuracy = 1e-10;  // of squared frequencies, from one iteration to the next
+constexpr double accuracy = 1e-8;  // of squared frequencies, from one iteration to the next
 constexpr int most_iterations = 500;
 
 Eigen::MatrixXd random_columns(Eigen::Index rows, Eigen::Index columns) {
