@@ -186,7 +186,7 @@ class PackedElements : public Elements {
   std::vector<Group> groups_;
   std::vector<One> ones_;
   std::vector<Several> several_;
-  std::vector<Local> forces_;  // of the packs
+  std::vector<Local> forces_;  // of the groups
   int last_shape_ = -1;
 };
 
