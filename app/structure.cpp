@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "app/formula.hpp"
@@ -181,6 +182,21 @@ double mises(const std::array<double, 6>& s) {
   return std::sqrt((a * a + b * b + c * c) / 2 + 3 * (s[3] * s[3] + s[4] * s[4] + s[5] * s[5]));
 }
 
+/// How a mode moves, in words: along which axis most, and whether it only turns about its middle.
+std::string motion_in(const Solid& solid, const Eigen::VectorXd& shape) {
+  constexpr double none = 1e-3;
+  int axis = 0;
+  for (int d = 1; d < solid.dim(); ++d)
+    if (share_along(solid, shape, d) > share_along(solid, shape, axis)) axis = d;
+  double sum = 0, size = 0;
+  for (Eigen::Index i = axis; i < shape.size(); i += solid.dim()) {
+    sum += solid.mass()[i] * shape[i];
+    size += solid.mass()[i] * std::abs(shape[i]);
+  }
+  return fmt::format("{:.0f} % along {}{}", 100 * share_along(solid, shape, axis), axis_names[axis],
+                     std::abs(sum) < none * size ? ", to and fro (torsion)" : "");
+}
+
 std::vector<Point> rows_of(const Solid& solid, const Eigen::VectorXd& values) {
   std::vector<Point> rows(solid.mesh().nodes.size());
   for (std::size_t i = 0; i < rows.size(); ++i)
@@ -281,18 +297,21 @@ std::vector<std::string> Structure::plan() const {
   if (supports_.held.empty() && loaded_)
     lines.push_back(fmt::format(
         "warning   {} is held nowhere and loaded: it will fly away -> clamp, [[structure.support]]", given_.name));
-  constexpr int shown = 3;
+  for (const std::string& line : frequency_lines()) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> Structure::frequency_lines() const {
+  constexpr int shown = 3, most_unknowns = 50000;  // beyond, the search would hold up the run
+  if (solid_->unknowns() > most_unknowns)
+    return {fmt::format("          frequencies are not looked for with more than {} unknowns", most_unknowns)};
+  std::vector<std::string> lines;
   const Modes modes = lowest_modes(*solid_, supports_, shown);
   for (Eigen::Index i = 0; i < modes.frequencies.size(); ++i) {
-    const double f = modes.frequencies[i];
-    if (f <= 0) continue;
-    int axis = 0;
-    std::array<double, 3> share{};
-    for (int d = 0; d < solid_->dim(); ++d) share[d] = share_along(*solid_, modes.shapes.col(i), d);
-    for (int d = 1; d < solid_->dim(); ++d) axis = share[d] > share[axis] ? d : axis;
-    const double ratio = damping_ / (4 * std::acos(-1.0) * f);
-    lines.push_back(fmt::format("          f{} = {:.5g} Hz dry, {:.0f} % along {}, damped with {:.3g} of critical",
-                                i + 1, f, 100 * share[axis], axis_names[axis], ratio));
+    const double f = modes.frequencies[i], ratio = damping_ / (4 * std::numbers::pi * f);
+    if (f > 0)
+      lines.push_back(fmt::format("          f{} = {:.5g} Hz dry, {}, damped with {:.3g} of critical", i + 1, f,
+                                  motion_in(*solid_, modes.shapes.col(i)), ratio));
   }
   return lines;
 }

@@ -31,6 +31,7 @@ class Structure {
 
  private:
   MarchOptions march_options(double step);
+  std::vector<std::string> frequency_lines() const;
   double stress_at(const Point& place, const std::string& component) const;
 
   StructureCase given_;

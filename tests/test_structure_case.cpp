@@ -38,10 +38,12 @@ thickness = 0.003
 young = 3.43e9
 density = 1200.0
 poisson = 0.37
-)" + more + R"(
+)" + more +
+         R"(
 [structure.fem]
 divisions = [1, 10, 1]
-)" + fem + R"(
+)" + fem +
+         R"(
 [output]
 every_time = 0.0005
 )";
