@@ -16,6 +16,14 @@ inline Scene scene_of(const std::string& path, const std::vector<std::string>& s
   return read_scene(file);
 }
 
+/// The same with the default scheme in place of the classic one.
+inline Scene with_default_scheme(Scene scene) {
+  scene.mps.scheme = "default";
+  scene.mps.kernel = "standard";
+  scene.collision.clear();
+  return scene;
+}
+
 /// Places of all particles now.
 inline std::vector<Point> places_of(const FluidSimulation& simulation) {
   const auto x = host(simulation.fluid().particles.position);
