@@ -13,10 +13,16 @@ CLI::Option* add_list(CLI::App& verb, const std::string& name, std::vector<T>& l
   return verb.add_option(name, list, meaning)->delimiter(',')->type_name(type)->allow_extra_args(false);
 }
 
-CLI::App* add_verb(CLI::App& bench, BenchOptions& options, What what, const std::string& name,
-                   const std::string& meaning) {
+CLI::App* add_bare_verb(CLI::App& bench, BenchOptions& options, What what, const std::string& name,
+                        const std::string& meaning) {
   CLI::App* verb = bench.add_subcommand(name, meaning);
   verb->callback([&options, what] { options.what = what; });
+  return verb;
+}
+
+CLI::App* add_verb(CLI::App& bench, BenchOptions& options, What what, const std::string& name,
+                   const std::string& meaning) {
+  CLI::App* verb = add_bare_verb(bench, options, what, name, meaning);
   add_list(*verb, "--sizes", options.sizes, "Particles, nearly: 5000,20000,80000", "N,...")
       ->check(CLI::Range(32, 2'000'000'000));
   verb->add_option("--dim", options.dimension, "Dimension of the scene: 2 or 3")->check(CLI::IsMember({2, 3}));
@@ -27,11 +33,15 @@ CLI::App* add_verb(CLI::App& bench, BenchOptions& options, What what, const std:
   return verb;
 }
 
-void add_results(CLI::App& verb, BenchOptions& options) {
+void add_rounds(CLI::App& verb, BenchOptions& options) {
   verb.add_option("--json", options.json, "Write the results to this file")->type_name("FILE");
   verb.add_option("--rounds", options.rounds, "Everything is measured so often, in turn")
       ->capture_default_str()
       ->check(CLI::Range(1, 100'000));
+}
+
+void add_results(CLI::App& verb, BenchOptions& options) {
+  add_rounds(verb, options);
   verb.add_option("--set", options.sets, "Change a value of the case that is measured, not of the states (repeatable)")
       ->type_name("KEY=VALUE")
       ->expected(1)
@@ -64,6 +74,16 @@ void add_pressure(CLI::App& bench, BenchOptions& options) {
   verb->footer("Example:\n  greenwater bench pressure --sizes 5000,20000 --states rest,splash --json pressure.json");
 }
 
+void add_fem(CLI::App& bench, BenchOptions& options) {
+  CLI::App* verb = add_bare_verb(bench, options, What::fem, "fem", "A structure's substep, element by element");
+  add_list(*verb, "--sizes", options.sizes, "Elements, nearly (default: 100,10000,100000)", "N,...")
+      ->check(CLI::Range(1, 2'000'000));
+  add_list(*verb, "-j,--threads", options.threads, "Threads; one thread is measured too", "N")
+      ->check(CLI::Range(1, 4096));
+  add_rounds(*verb, options);
+  verb->footer("Example:\n  greenwater bench fem --sizes 100 --rounds 21 --json fem.json");
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, BenchOptions& options) {
@@ -78,6 +98,7 @@ void add_bench(CLI::App& app, BenchOptions& options) {
   add_results(*scaling, options);
   add_steps(*scaling, options);
   scaling->footer("Example:\n  greenwater bench scaling --dim 3 --sizes 30000,100000 -j 1,2 --json scaling.json");
+  add_fem(*bench, options);
   CLI::App* states = add_verb(*bench, options, What::states, "states", "Make the states that the others start from");
   states->footer("Example:\n  greenwater bench states --sizes 5000,20000,80000 --states rest,collapse,splash");
   bench->footer(

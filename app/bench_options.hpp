@@ -13,9 +13,9 @@ class App;
 namespace greenwater {
 
 struct BenchOptions {
-  enum class What { states, step, pressure, scaling };
+  enum class What { states, step, pressure, scaling, fem };
   What what = What::step;
-  std::vector<int> sizes;  ///< particles, nearly; empty: the usual ones of the dimension
+  std::vector<int> sizes;  ///< particles, or elements of `fem`, nearly; empty: the usual ones
   int dimension = 2;
   std::vector<std::string> states;           ///< rest, early, collapse, splash
   std::vector<std::string> plates;           ///< none, plate, barrier

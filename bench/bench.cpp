@@ -41,6 +41,7 @@ int run_bench(const BenchOptions& options) {
     case What::states: make_states(options); break;
     case What::step: bench::write_results(options, bench::bench_step(options)); break;
     case What::pressure: bench::write_results(options, bench::bench_pressure(options)); break;
+    case What::fem: bench::write_results(options, bench::bench_fem(options)); break;
     case What::scaling: break;
   }
   return 0;

@@ -298,12 +298,15 @@ TEST_CASE("the words of bench are taken apart, or refused", "[unit][bench][comma
   CHECK(command.bench.threads == std::vector{2});
   CHECK(bench({"scaling", "-j", "1,2"}).bench.threads == std::vector{1, 2});
   CHECK(bench({"states"}).bench.what == BenchOptions::What::states);
+  CHECK(bench({"fem", "--sizes", "7"}).bench.sizes == std::vector{7});
   for (const auto& wrong : std::vector<std::vector<const char*>>{{},
                                                                  {"stpe"},
                                                                  {"step", "--sizes", "3"},
                                                                  {"step", "--dim", "4"},
                                                                  {"step", "--rounds", "0"},
-                                                                 {"states", "--json", "a"}})
+                                                                 {"states", "--json", "a"},
+                                                                 {"fem", "--states", "rest"},
+                                                                 {"fem", "--sizes", "0"}})
     CHECK_THROWS_AS(bench(wrong), CaseError);
 }
 
@@ -357,6 +360,27 @@ TEST_CASE("bench scaling has a row for each region, size and number of threads",
     CHECK(row["memory_per_particle"] > 100);
   }
   CHECK(steps == 4);
+}
+
+TEST_CASE("bench fem measures substeps beside plain products", "[unit][bench][program]") {
+  const TemporaryFolder folder;
+  const Answer answer =
+      run_program({"bench", "fem", "--sizes", "100,7,400", "-j", "2", "--rounds", "1", "--json", "f.json"}, folder);
+  INFO(answer.err);
+  REQUIRE(answer.code == 0);
+  CHECK(contains(answer.out, "2 million substeps of the paper's plate, equal, incompatible, corotational"));
+  const Json all = json_in(folder / "f.json");
+  CHECK(missing(all["origin"], origin_keys).empty());
+  const std::size_t threads = all["origin"]["threads"] == 1 ? 1 : 2;
+  CHECK(all["rows"].size() == (4 + 2 + 2) * threads);
+  for (const Json& row : all["rows"]) {
+    CHECK(missing(row, {"case", "elements", "mesh", "element", "kinematics", "threads", "substeps", "ms", "ms_min",
+                        "ms_max", "ns_per_element", "ns_per_element_min", "product_ns_per_element", "ratio"})
+              .empty());
+    CHECK(row["ratio"] > 0);
+    CHECK(row["ns_per_element"].get<double>() == Approx(1e6 * row["ms"].get<double>() / row["elements"].get<int>()));
+    CHECK(row.contains("paper_run_s") == (row["elements"] == 100));
+  }
 }
 
 TEST_CASE("two results are compared row by row", "[unit][bench]") {
