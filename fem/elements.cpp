@@ -104,7 +104,7 @@ class PackedElements : public Elements {
   }
 
   void tangent(const SolidMesh& mesh, int element, const double* u, double* k) const override {
-    const One data = formula_.make(geometry_of<dim>(mesh, element, thickness_));
+    const One data = stored(element);
     for (int first = 0; first < unknowns; first += lanes) {
       Slope local[nodes][dim], f[nodes][dim];
       for (int i = 0; i < unknowns; ++i) {
@@ -167,6 +167,16 @@ class PackedElements : public Elements {
     const auto* from = reinterpret_cast<const char*>(&one);
     auto* to = reinterpret_cast<char*>(&all) + lane * sizeof(double);
     for (std::size_t i = 0; i < sizeof(One); i += sizeof(double)) std::memcpy(to + lanes * i, from + i, sizeof(double));
+  }
+
+  One stored(int element) const {
+    const Group& group = groups_[slot_[element] / lanes];
+    if (group.shared) return ones_[group.data];
+    One one;
+    auto* to = reinterpret_cast<char*>(&one);
+    const auto* from = reinterpret_cast<const char*>(&several_[group.data]) + slot_[element] % lanes * sizeof(double);
+    for (std::size_t i = 0; i < sizeof(One); i += sizeof(double)) std::memcpy(to + i, from + lanes * i, sizeof(double));
+    return one;
   }
 
   static void gather(const Group& group, const double* u, Local& local) {

@@ -13,8 +13,9 @@ struct Modes {
   Eigen::MatrixXd shapes;       // a column for each, with shape.M.shape = 1 kg
 };
 
-/// The lowest modes of K - omega^2 M with K the tangent at u, by inverse iteration of a subspace (Bathe). Throws
-/// NumericsError when it does not converge.
+/// The lowest modes of K - omega^2 M with K the tangent at u, by Lanczos' method with blocks on the inverse of K; at an
+/// unstable u those nearest to zero, with frequency 0 where omega^2 is negative. Throws NumericsError when it does not
+/// converge.
 Modes lowest_modes(const Solid& solid, const Supports& supports, int count, const Eigen::VectorXd& u);
 Modes lowest_modes(const Solid& solid, const Supports& supports, int count);
 

@@ -42,15 +42,15 @@ std::vector<int> free_unknowns(const Supports& supports, int count) {
 Eigen::SparseMatrix<double> part_of(const Eigen::SparseMatrix<double>& matrix, const std::vector<int>& chosen) {
   std::vector<int> row(matrix.rows(), -1);
   for (std::size_t i = 0; i < chosen.size(); ++i) row[chosen[i]] = static_cast<int>(i);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t j = 0; j < chosen.size(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, chosen[j]); entry; ++entry) {
-      if (row[entry.row()] >= 0) entries.emplace_back(row[entry.row()], static_cast<int>(j), entry.value());
-    }
-  }
   const auto size = static_cast<Eigen::Index>(chosen.size());
   Eigen::SparseMatrix<double> part(size, size);
-  part.setFromTriplets(entries.begin(), entries.end());
+  part.reserve(matrix.nonZeros());
+  for (Eigen::Index j = 0; j < size; ++j) {
+    part.startVec(j);
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(matrix, chosen[j]); entry; ++entry)
+      if (row[entry.row()] >= 0) part.insertBack(row[entry.row()], j) = entry.value();
+  }
+  part.finalize();
   return part;
 }
 
