@@ -18,7 +18,7 @@ Words kinds_of(const Scene& scene) {
   return kinds;
 }
 
-/// A point, or of a plate how high on it, in its middle.
+/// A point, or of a plate how high on it and on which side, in the middle of its width. Left is -x of a plate upright.
 Point read_place_on(Section& section, const Scene& scene, const StructureCase& structure) {
   if (!structure.plate || section.offers("point")) {
     const Point shown = structure.mesh.nodes.empty() ? Point{} : structure.mesh.nodes.back();
@@ -26,11 +26,12 @@ Point read_place_on(Section& section, const Scene& scene, const StructureCase& s
   }
   const PlateCase& plate = *structure.plate;
   const double part = section.number("height_fraction", "-", between(0, 1), example(1.0));
+  const std::string side = section.choice("side", {"middle", "left", "right"}, std::string("middle"));
+  const double right = side == "left" ? 0 : side == "right" ? plate.thickness : plate.thickness / 2;
   const PlateFrame frame = frame_of(plate, scene.dimension);
   Point point = frame.corner;
   for (std::size_t d = 0; d < 3; ++d)
-    point[d] +=
-        part * plate.height * frame.up[d] + plate.thickness / 2 * frame.right[d] + plate.width / 2 * frame.over[d];
+    point[d] += part * plate.height * frame.up[d] + right * frame.right[d] + plate.width / 2 * frame.over[d];
   return point;
 }
 

@@ -10,6 +10,7 @@
 #include "app/formula.hpp"
 #include "core/check.hpp"
 #include "fem/critical_step.hpp"
+#include "fem/mesh_place.hpp"
 
 namespace greenwater {
 namespace {
@@ -237,18 +238,8 @@ MarchOptions Structure::march_options(double step) {
 }
 
 double Structure::stress_at(const Point& place, const std::string& component) const {
-  const SolidMesh& mesh = solid_->mesh();
-  int nearest = 0;
-  double least = 1e300;
-  for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e) {
-    Point centre{};
-    for (int a = 0; a < mesh.nodes_per_element(); ++a)
-      for (std::size_t d = 0; d < 3; ++d) centre[d] += mesh.nodes[mesh.elements[e][a]][d] / mesh.nodes_per_element();
-    if (distance2(centre, place) >= least) continue;
-    least = distance2(centre, place);
-    nearest = e;
-  }
-  const std::array<double, 6> stress = solid_->stress(march_->displacement(), nearest);
+  const MeshPlace at = place_in_mesh(solid_->mesh(), place);
+  const std::array<double, 6> stress = solid_->stress(march_->displacement(), at.element, at.xi);
   if (component == "mises") return mises(stress);
   const std::array<std::string, 6> names{"xx", "yy", "zz", "xy", "yz", "xz"};
   return stress[std::find(names.begin(), names.end(), component) - names.begin()];

@@ -118,11 +118,11 @@ class PackedElements : public Elements {
     }
   }
 
-  Stress stress(const SolidMesh& mesh, int element, const double* u) const override {
+  Stress stress(const SolidMesh& mesh, int element, const double* u, const std::array<double, 3>& xi) const override {
     double local[nodes][dim];
     for (int a = 0; a < nodes; ++a)
       for (int d = 0; d < dim; ++d) local[a][d] = u[dim * mesh.elements[element][a] + d];
-    return formula_.stress(geometry_of<dim>(mesh, element, thickness_), local);
+    return formula_.stress(geometry_of<dim>(mesh, element, thickness_), local, xi);
   }
 
  private:

@@ -20,7 +20,7 @@ class Elements {
   virtual double energy(const double* u) const = 0;
   /// d2W/du2 of one element, row by row [N/m].
   virtual void tangent(const SolidMesh& mesh, int element, const double* u, double* k) const = 0;
-  virtual Stress stress(const SolidMesh& mesh, int element, const double* u) const = 0;
+  virtual Stress stress(const SolidMesh& mesh, int element, const double* u, const std::array<double, 3>& xi) const = 0;
 };
 
 /// Elements that are equal up to a translation share what is stored of them.

@@ -6,43 +6,11 @@
 #include <vector>
 
 #include "core/check.hpp"
+#include "fem/shape_functions.hpp"
 #include "fem/tensor.hpp"
 
 namespace greenwater::element {
 namespace {
-
-template <int Dim>
-using Point = std::array<double, Dim>;
-
-/// Corner a of the reference element [-1, 1]^Dim: the first four nodes go round, the next four lie above them.
-template <int Dim>
-Point<Dim> corner(int a) {
-  Point<Dim> xi;
-  xi[0] = a % 4 == 1 || a % 4 == 2 ? 1 : -1;
-  xi[1] = a % 4 >= 2 ? 1 : -1;
-  if constexpr (Dim == 3) xi[2] = a >= 4 ? 1 : -1;
-  return xi;
-}
-
-/// Shape functions and their slopes at one point of the reference element.
-template <int Dim>
-struct Functions {
-  Point<Dim> xi;
-  double shape[1 << Dim];       // N_a
-  double slope[1 << Dim][Dim];  // dN_a/dxi_k
-
-  explicit Functions(const Point<Dim>& at) : xi(at) {
-    for (int a = 0; a < 1 << Dim; ++a) {
-      const Point<Dim> c = corner<Dim>(a);
-      shape[a] = 1;
-      for (int k = 0; k < Dim; ++k) {
-        shape[a] *= (1 + c[k] * xi[k]) / 2;
-        slope[a][k] = c[k] / 2;
-        for (int d = 0; d < Dim; ++d) slope[a][k] *= d == k ? 1 : (1 + c[d] * xi[d]) / 2;
-      }
-    }
-  }
-};
 
 /// At the centre, and at all corners shrunk towards it: 1 keeps them, 1 / sqrt(3) makes them the points of Gauss.
 template <int Dim>
@@ -108,19 +76,26 @@ void require_sound(const SolidMesh& mesh, int element, const Tensor<Dim, double>
                                      "opposite them, and let no angle reach 0 or 180 degrees"));
 }
 
+/// Gradients of the incompatible modes: those of the centre, times xi_k j0/j.
 template <int Dim>
-void set_point(Geometry<Dim>& g, int p, const Functions<Dim>& n, double thickness) {
-  const auto j = jacobian(g, n), middle = jacobian(g, at_centre<Dim>());
-  const auto cofactor = cofactors(j), centre = cofactors(middle);
-  const double det = determinant(j, cofactor), ratio = determinant(middle, centre) / det;  // j0/j
-  g.weight[p] = det * thickness;
-  for (int a = 0; a < g.nodes; ++a) g.share[a] += n.shape[a] * g.weight[p];
-  set_gradients(n, cofactor, det, g.gradient[p]);
+void set_modes(const Functions<Dim>& n, const Tensor<Dim, double>& middle, double det, double (&mode)[Dim][Dim]) {
+  const auto centre = cofactors(middle);
+  const double ratio = determinant(middle, centre) / det;
   for (int k = 0; k < Dim; ++k) {
     double length = 0;
     for (int i = 0; i < Dim; ++i) length += centre(i, k) * centre(i, k);
-    for (int i = 0; i < Dim; ++i) g.mode[p][k][i] = ratio * n.xi[k] * centre(i, k) / std::sqrt(length);
+    for (int i = 0; i < Dim; ++i) mode[k][i] = ratio * n.xi[k] * centre(i, k) / std::sqrt(length);
   }
+}
+
+template <int Dim>
+void set_point(Geometry<Dim>& g, int p, const Functions<Dim>& n, double thickness) {
+  const auto j = jacobian(g, n), cofactor = cofactors(j);
+  const double det = determinant(j, cofactor);
+  g.weight[p] = det * thickness;
+  for (int a = 0; a < g.nodes; ++a) g.share[a] += n.shape[a] * g.weight[p];
+  set_gradients(n, cofactor, det, g.gradient[p]);
+  set_modes(n, jacobian(g, at_centre<Dim>()), det, g.mode[p]);
 }
 
 }  // namespace
@@ -142,6 +117,21 @@ Geometry<Dim> geometry_of(const SolidMesh& mesh, int element, double thickness) 
   return g;
 }
 
+template <int Dim>
+LocalGradients<Dim> gradients_at(const Geometry<Dim>& g, const std::array<double, 3>& xi) {
+  Point<Dim> at;
+  for (int d = 0; d < Dim; ++d) at[d] = xi[d];
+  const Functions<Dim> n(at);
+  const auto j = jacobian(g, n), cofactor = cofactors(j);
+  const double det = determinant(j, cofactor);
+  LocalGradients<Dim> local;
+  set_gradients(n, cofactor, det, local.shape);
+  set_modes(n, jacobian(g, at_centre<Dim>()), det, local.mode);
+  return local;
+}
+
+template LocalGradients<2> gradients_at(const Geometry<2>&, const std::array<double, 3>&);
+template LocalGradients<3> gradients_at(const Geometry<3>&, const std::array<double, 3>&);
 template Geometry<2> geometry_of(const SolidMesh&, int, double);
 template Geometry<3> geometry_of(const SolidMesh&, int, double);
 

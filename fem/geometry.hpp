@@ -1,6 +1,8 @@
 #pragma once
 // One element before it moves: gradients of its shape functions and weights at the 2^dim points of Gauss.
 
+#include <array>
+
 #include "core/solid_mesh.hpp"
 
 namespace greenwater::element {
@@ -30,5 +32,16 @@ struct Geometry {
 /// a corner. `thickness` [m] is that of a 2-D element.
 template <int Dim>
 Geometry<Dim> geometry_of(const SolidMesh& mesh, int element, double thickness);
+
+/// What Geometry has at the points of Gauss, at any other.
+template <int Dim>
+struct LocalGradients {
+  double shape[1 << Dim][Dim] = {};  // dN_a/dX [1/m]
+  double mode[Dim][Dim] = {};        // of the incompatible modes [-]
+};
+
+/// At natural coordinates xi, each from -1 to 1.
+template <int Dim>
+LocalGradients<Dim> gradients_at(const Geometry<Dim>& g, const std::array<double, 3>& xi);
 
 }  // namespace greenwater::element

@@ -82,24 +82,42 @@ auto LinearElement<Dim, Turning>::shape(const Geometry<Dim>& g) -> Data<double> 
 }
 
 template <int Dim, bool Turning>
-Stress LinearElement<Dim, Turning>::stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim]) const {
-  Tensor<Dim, double> f = identity<Dim, double>();
-  double swelling = 0, mean[nodes][Dim];
-  mean_gradients(g, mean);
+Tensor<Dim, double> LinearElement<Dim, Turning>::gradient(const Geometry<Dim>& g, const double (&d)[unknowns],
+                                                          const std::array<double, 3>& xi) const {
+  const LocalGradients<Dim> local = gradients_at(g, xi);
+  Tensor<Dim, double> h;
+  for (int a = 0; a < nodes; ++a)
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) h(i, j) += d[Dim * a + i] * local.shape[a][j];
+  if (rules.kind != ElementKind::incompatible) return h;
+  const Eigen::MatrixXd k = whole_stiffness(g, rules.lame, rules.kind);
+  const int inner = static_cast<int>(k.rows()) - unknowns;
+  const Eigen::VectorXd push = k.bottomLeftCorner(inner, unknowns) * Eigen::Map<const Eigen::VectorXd>(d, unknowns);
+  const Eigen::VectorXd amount = -k.bottomRightCorner(inner, inner).llt().solve(push);
+  for (int m = 0; m < Dim; ++m)
+    for (int i = 0; i < Dim; ++i)
+      for (int j = 0; j < Dim; ++j) h(i, j) += amount[Dim * m + i] * local.mode[m][j];
+  return h;
+}
+
+template <int Dim, bool Turning>
+Stress LinearElement<Dim, Turning>::stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim],
+                                           const std::array<double, 3>& xi) const {
   const Data<double> e = shape(g);
   const auto turned = frame(e, u);
-  double d[unknowns];
+  double d[unknowns], mean[nodes][Dim];
   local_displacement(e, u, turned, d);
-  for (int a = 0; a < nodes; ++a) {
-    for (int i = 0; i < Dim; ++i) {
-      for (int j = 0; j < Dim; ++j) f(i, j) += d[Dim * a + i] * g.centre[a][j];
-      swelling += d[Dim * a + i] * (rules.kind == ElementKind::mean_dilatation ? mean[a][i] : g.centre[a][i]);
-    }
+  const Tensor<Dim, double> h = gradient(g, d, xi);
+  const double own = trace(h);
+  double swelling = own;
+  if (rules.kind == ElementKind::mean_dilatation) {
+    mean_gradients(g, mean);
+    swelling = 0;
+    for (int i = 0; i < unknowns; ++i) swelling += d[i] * mean[i / Dim][i % Dim];
   }
   Tensor<Dim, double> s;
-  const double own = trace(f) - Dim;
   for (int i = 0; i < Dim; ++i) {
-    for (int j = 0; j < Dim; ++j) s(i, j) = rules.lame.mu * (f(i, j) + f(j, i) - (i == j ? 2 : 0));
+    for (int j = 0; j < Dim; ++j) s(i, j) = rules.lame.mu * (h(i, j) + h(j, i));
     s(i, i) += rules.lame.lambda * swelling + 2 * rules.lame.mu / Dim * (swelling - own);
   }
   if constexpr (Turning) {

@@ -57,14 +57,18 @@ struct LinearElement {
     }
   }
 
-  /// At the centre, where the gradients of the incompatible modes are zero.
-  Stress stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim]) const;
+  /// At the natural coordinates xi.
+  Stress stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim], const std::array<double, 3>& xi) const;
 
  private:
   template <class T>
   struct Frame {
     Tensor<Dim, T> f, r;  // F = R U
   };
+
+  /// grad d at xi, incompatible modes included.
+  Tensor<Dim, double> gradient(const Geometry<Dim>& g, const double (&d)[unknowns],
+                               const std::array<double, 3>& xi) const;
 
   template <class D, class T>
   static Frame<T> frame(const Data<D>& e, const T (&u)[nodes][Dim]) {

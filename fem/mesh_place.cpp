@@ -29,37 +29,39 @@ double square_to_box(const SolidMesh& mesh, int element, const std::array<double
   return square;
 }
 
-/// X(xi) = x by Newton's steps, each brought back into the element.
 template <int Dim>
-Found nearest_in(const SolidMesh& mesh, int element, const std::array<double, 3>& x) {
-  using Vector = Eigen::Matrix<double, Dim, 1>;
-  Vector xi = Vector::Zero(), off;
-  const auto look = [&](auto&& use) {
+struct Offset {
+  Eigen::Matrix<double, Dim, 1> vector;                                             // x - X(xi) [m]
+  Eigen::Matrix<double, Dim, Dim> slope = Eigen::Matrix<double, Dim, Dim>::Zero();  // dX/dxi
+
+  Offset(const SolidMesh& mesh, int element, const Eigen::Matrix<double, Dim, 1>& xi, const std::array<double, 3>& x) {
     element::Point<Dim> at;
-    for (int d = 0; d < Dim; ++d) at[d] = xi[d];
+    for (int d = 0; d < Dim; ++d) {
+      at[d] = xi[d];
+      vector[d] = x[d];
+    }
     const element::Functions<Dim> n(at);
-    Eigen::Matrix<double, Dim, Dim> j = Eigen::Matrix<double, Dim, Dim>::Zero();
-    for (int d = 0; d < Dim; ++d) off[d] = x[d];
     for (int a = 0; a < 1 << Dim; ++a) {
       const auto& node = mesh.nodes[mesh.elements[element][a]];
       for (int d = 0; d < Dim; ++d) {
-        off[d] -= n.shape[a] * node[d];
-        for (int k = 0; k < Dim; ++k) j(d, k) += n.slope[a][k] * node[d];
+        vector[d] -= n.shape[a] * node[d];
+        for (int k = 0; k < Dim; ++k) slope(d, k) += n.slope[a][k] * node[d];
       }
     }
-    use(j);
-  };
-  for (int step = 0; step < 20; ++step) {
-    double moved = 0;
-    look([&](const auto& j) {
-      const Vector before = xi;
-      xi = (xi + j.inverse() * off).cwiseMax(-1).cwiseMin(1);
-      moved = (xi - before).template lpNorm<Eigen::Infinity>();
-    });
-    if (moved < 1e-14) break;
   }
-  look([](const auto&) {});
-  Found found{{element, {}}, off.squaredNorm()};
+};
+
+/// X(xi) = x by Newton's steps, each brought back into the element.
+template <int Dim>
+Found nearest_in(const SolidMesh& mesh, int element, const std::array<double, 3>& x) {
+  Eigen::Matrix<double, Dim, 1> xi = Eigen::Matrix<double, Dim, 1>::Zero(), before;
+  int steps = 0;
+  do {
+    const Offset<Dim> off(mesh, element, xi, x);
+    before = xi;
+    xi = (xi + off.slope.inverse() * off.vector).cwiseMax(-1).cwiseMin(1);
+  } while ((xi - before).cwiseAbs().maxCoeff() > 1e-14 && ++steps < 20);
+  Found found{{element, {}}, Offset<Dim>(mesh, element, xi, x).vector.squaredNorm()};
   for (int d = 0; d < Dim; ++d) found.place.xi[d] = xi[d];
   return found;
 }
@@ -68,11 +70,9 @@ Found nearest_in(const SolidMesh& mesh, int element, const std::array<double, 3>
 
 MeshPlace place_in_mesh(const SolidMesh& mesh, const std::array<double, 3>& x) {
   expect(!mesh.elements.empty());
-  double size = 0;
-  for (int d = 0; d < mesh.dim; ++d)
-    for (const int node : mesh.elements[0])
-      size = std::max(size, std::abs(mesh.nodes[node][d] - mesh.nodes[mesh.elements[0][0]][d]));
-  const double round_off = 1e-20 * size * size;
+  const std::array<double, 3>&first = mesh.nodes[mesh.elements[0][0]], &opposite = mesh.nodes[mesh.elements[0][2]];
+  double round_off = 0;  // of squared distances
+  for (int d = 0; d < mesh.dim; ++d) round_off += 1e-20 * (first[d] - opposite[d]) * (first[d] - opposite[d]);
   Found best;
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e) {
     if (square_to_box(mesh, e, x) + round_off >= best.square) continue;

@@ -138,8 +138,11 @@ std::vector<std::array<double, 6>> Solid::stress(const Eigen::VectorXd& u) const
   return all;
 }
 
-std::array<double, 6> Solid::stress(const Eigen::VectorXd& u, int element) const {
-  return elements_->stress(mesh_, element, u.data());
+std::array<double, 6> Solid::stress(const Eigen::VectorXd& u, int element) const { return stress(u, element, {}); }
+
+std::array<double, 6> Solid::stress(const Eigen::VectorXd& u, int element, const std::array<double, 3>& xi) const {
+  expect(u.size() == unknowns() && element >= 0 && element < static_cast<int>(mesh_.elements.size()));
+  return elements_->stress(mesh_, element, u.data(), xi);
 }
 
 }  // namespace greenwater

@@ -69,6 +69,9 @@ class Solid {
   std::vector<std::array<double, 6>> stress(const Eigen::VectorXd& u) const;
   /// That of one element.
   std::array<double, 6> stress(const Eigen::VectorXd& u, int element) const;
+  /// That at natural coordinates in it, each from -1 to 1 (fem/mesh_place.hpp finds them); incompatible modes included,
+  /// so that it goes linearly from face to face of a plate that is one element thick and bends.
+  std::array<double, 6> stress(const Eigen::VectorXd& u, int element, const std::array<double, 3>& xi) const;
 
  private:
   void link_nodes();

@@ -3,24 +3,35 @@
 namespace greenwater::element {
 
 template <int Dim>
-Stress TotalElement<Dim>::stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim]) const {
+Tensor<Dim, double> TotalElement<Dim>::deformation(const Geometry<Dim>& g, const double (&u)[nodes][Dim],
+                                                   const std::array<double, 3>& xi) const {
   Gradients<double> h;
+  double amount[modes];
   const Data<double> e = make(g);
-  deform(e, u, h);
+  deform(e, u, h, amount);
+  const LocalGradients<Dim> local = gradients_at(g, xi);
+  Tensor<Dim, double> f = identity<Dim, double>();
+  for (int i = 0; i < Dim; ++i) {
+    for (int j = 0; j < Dim; ++j) {
+      for (int a = 0; a < nodes; ++a) f(i, j) += u[a][i] * local.shape[a][j];
+      for (int k = 0; k < Dim; ++k) f(i, j) += amount[Dim * k + i] * local.mode[k][j];
+    }
+  }
+  if (rules.kind != ElementKind::mean_dilatation) return f;
   double volume = 0;
   for (int p = 0; p < points; ++p) volume += e.weight[p] * volume_ratio(h[p]);
-  Tensor<Dim, double> centre = identity<Dim, double>();
-  for (int a = 0; a < nodes; ++a)
-    for (int i = 0; i < Dim; ++i)
-      for (int j = 0; j < Dim; ++j) centre(i, j) += u[a][i] * g.centre[a][j];
-  if (rules.kind == ElementKind::mean_dilatation) {
-    const double ratio = determinant(centre, cofactors(centre));
-    const double scale = std::pow(volume / g.volume() / ratio, 1.0 / Dim);
-    for (auto& row : centre.m)
-      for (double& entry : row) entry *= scale;
-  }
-  for (int d = 0; d < Dim; ++d) centre(d, d) -= 1;
-  const Response<double> r = respond(centre);
+  const double scale = std::pow(volume / g.volume() / determinant(f, cofactors(f)), 1.0 / Dim);
+  for (auto& row : f.m)
+    for (double& entry : row) entry *= scale;
+  return f;
+}
+
+template <int Dim>
+Stress TotalElement<Dim>::stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim],
+                                 const std::array<double, 3>& xi) const {
+  Tensor<Dim, double> h = deformation(g, u, xi);
+  for (int d = 0; d < Dim; ++d) h(d, d) -= 1;
+  const Response<double> r = respond(h);
   double ratio = determinant(r.f, cofactors(r.f));
   double across = 0;
   if (Dim == 2) {

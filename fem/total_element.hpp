@@ -74,8 +74,8 @@ struct TotalElement {
     }
   }
 
-  /// Cauchy's stress at the centre, where the gradients of the incompatible modes are zero.
-  Stress stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim]) const;
+  /// Cauchy's, at the natural coordinates xi.
+  Stress stress(const Geometry<Dim>& g, const double (&u)[nodes][Dim], const std::array<double, 3>& xi) const;
 
  private:
   template <class T>
@@ -148,9 +148,21 @@ struct TotalElement {
     return r;
   }
 
+  /// F at xi, mean dilatation and incompatible modes included.
+  Tensor<Dim, double> deformation(const Geometry<Dim>& g, const double (&u)[nodes][Dim],
+                                  const std::array<double, 3>& xi) const;
+
   /// h = grad u, with the incompatible modes where the element has them.
   template <class D, class T>
   void deform(const Data<D>& e, const T (&u)[nodes][Dim], Gradients<T>& h) const {
+    T amount[modes];
+    deform(e, u, h, amount);
+  }
+
+  /// Tells the a_k too, component by component; 0 where there are no modes.
+  template <class D, class T>
+  void deform(const Data<D>& e, const T (&u)[nodes][Dim], Gradients<T>& h, T (&amount)[modes]) const {
+    for (int m = 0; m < modes; ++m) amount[m] = T{};
     for (int p = 0; p < points; ++p) {
       h[p] = {};
       for (int a = 1; a < nodes; ++a)
@@ -163,7 +175,10 @@ struct TotalElement {
       for (int p = 0; p < points; ++p) add_modes(e.weight[p], e.mode[p], respond(h[p]), residual, tangent);
       solve_symmetric(tangent, residual);
       double moved = 0;
-      for (int m = 0; m < modes; ++m) moved = std::max(moved, largest(residual[m]));
+      for (int m = 0; m < modes; ++m) {
+        moved = std::max(moved, largest(residual[m]));
+        amount[m] -= residual[m];
+      }
       for (int p = 0; p < points; ++p)
         for (int k = 0; k < Dim; ++k)
           for (int i = 0; i < Dim; ++i)

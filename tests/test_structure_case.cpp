@@ -97,6 +97,22 @@ std::pair<Point, Point> bounds_of(const MeshPart& part, const SolidMesh& mesh) {
 
 }  // namespace
 
+TEST_CASE("a stress probe on the face of a plate reads the bending stress there", "[unit][structure]") {
+  // Bent to a curvature of 0.0002 1/m, with no strain across the width: E / (1 - nu^2) times 0.0001 h at the faces.
+  const std::string bent =
+      "base_side = \"upstream\"\ndisplacement = [\"0.0001 * y^2\", \"-0.0002 * (x - 0.6015) * y\"]\n";
+  std::string text = small_plate("", bent);
+  for (const std::string side : {"middle", "left", "right"})
+    text += "[[probe]]\nname = \"" + side + "\"\nkind = \"structure_stress\"\ncomponent = \"yy\"\n" +
+            "height_fraction = 0.55\n" + (side == "middle" ? "" : "side = \"" + side + "\"\n");
+  StructureSimulation simulation(scene_of(text));
+  const double face = 3.43e9 / (1 - 0.37 * 0.37) * 0.0001 * 0.003;
+  CHECK(simulation.sample(0) == Approx(0).margin(0.01 * face));
+  CHECK(simulation.sample(1) == Approx(face).epsilon(0.01));
+  CHECK(simulation.sample(2) == Approx(-face).epsilon(0.01));
+  CHECK(contains(complaint_about(replaced(text, "side = \"left\"", "side = \"lef\"")), "left"));
+}
+
 TEST_CASE("the paper's plate: mesh, substeps, and its frequencies in the plan", "[unit][structure]") {
   const Scene scene = plate_scene("poli30");
   CHECK_FALSE(scene.has_fluid);

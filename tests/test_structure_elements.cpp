@@ -84,6 +84,10 @@ TEST_CASE("patch test: a distorted mesh takes constant strain exactly", "[unit][
       const auto stress = solid.stress(exact);
       for (const auto& s : stress)
         for (int c = 0; c < 6; ++c) CHECK(s[c] == Approx(stress[0][c]).margin(1e-4));
+      for (std::size_t e = 0; e < mesh.elements.size(); ++e) {
+        const auto s = solid.stress(exact, static_cast<int>(e), {0.9, -1, dim == 2 ? 0 : 0.3});
+        for (int c = 0; c < 6; ++c) CHECK(s[c] == Approx(stress[0][c]).margin(1e-4));
+      }
     }
   }
 }
