@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "app/formula.hpp"
+#include "app/build_structure.hpp"
 #include "core/check.hpp"
 #include "fem/critical_step.hpp"
 #include "fem/mesh_place.hpp"
@@ -16,138 +16,6 @@ namespace greenwater {
 namespace {
 
 constexpr const char* axis_names = "xyz";
-
-/// A complaint of the finite elements, with the place of the structure in the case.
-template <class Build>
-auto built_at(const Place& place, Build build) {
-  try {
-    return build();
-  } catch (const CaseError& error) {
-    refuse(place, error.what());
-  }
-}
-
-std::unique_ptr<Solid> solid_of(const StructureCase& given) {
-  Material material{given.young, given.poisson, given.density, Law::linear};
-  if (given.law == "neo_hookean") material.law = Law::neo_hookean;
-  SolidOptions options;
-  if (given.element == "full") options.element = ElementKind::full;
-  if (given.element == "mean_dilatation") options.element = ElementKind::mean_dilatation;
-  if (given.kinematics == "small") options.kinematics = Kinematics::small;
-  if (given.kinematics == "total_lagrangian") options.kinematics = Kinematics::total_lagrangian;
-  if (given.plane == "stress") options.plane = Plane::stress;
-  options.thickness = given.depth;
-  return built_at(given.place, [&] { return std::make_unique<Solid>(given.mesh, material, options); });
-}
-
-/// A formula of t that can be copied, as std::function wants it.
-std::function<double(double)> of_time(const NumberFormula& formula) {
-  const auto compiled = std::make_shared<Formula>(formula.text, formula.place, Variables::time);
-  return [compiled](double t) { return (*compiled)(0, 0, 0, t); };
-}
-
-std::vector<int> nodes_of(const StructureCase& given, const SupportCase& support) {
-  if (!support.part.empty()) return find_part(given.mesh, support.part)->nodes;
-  std::vector<int> nodes;
-  for (int i = 0; i < static_cast<int>(given.mesh.nodes.size()); ++i) {
-    const Point& x = given.mesh.nodes[i];
-    bool inside = true;
-    for (int d = 0; d < 3; ++d) {
-      const bool bounded = support.max[d] > support.min[d];  // a 2-D scene says nothing of z
-      inside = inside && (!bounded || (x[d] >= support.min[d] && x[d] <= support.max[d]));
-    }
-    if (inside) nodes.push_back(i);
-  }
-  require_at(support.place, !nodes.empty(), "no node of \"", given.name, "\" lies in the box of this support");
-  return nodes;
-}
-
-Supports supports_of(const StructureCase& given) {
-  Supports supports;
-  for (const SupportCase& support : given.supports) {
-    const std::vector<int> nodes = nodes_of(given, support);
-    for (const int axis : support.axes) {
-      if (support.displacement)
-        move(supports, given.mesh.dim, nodes, axis, of_time(*support.displacement));
-      else
-        hold(supports, given.mesh.dim, nodes, axis);
-    }
-  }
-  return supports;
-}
-
-FieldAt field_of(const NumberFormula& formula) {
-  const auto compiled = std::make_shared<Formula>(formula.text, formula.place);
-  return [compiled](const Point& x) { return (*compiled)(x[0], x[1], x[2], 0); };
-}
-
-VectorAt vector_of(const VectorFormula& formulas) {
-  const auto compiled = std::make_shared<std::array<Formula, 3>>(compile(formulas.text, formulas.place));
-  return [compiled](const Point& x) {
-    Point value{};
-    for (std::size_t d = 0; d < 3; ++d) value[d] = (*compiled)[d](x[0], x[1], x[2], 0);
-    return value;
-  };
-}
-
-double area_of(const Solid& solid, const std::vector<Facet>& facets) {
-  const Eigen::VectorXd f = traction_pattern(solid, facets, [](const Point&) { return Point{1, 0, 0}; });
-  double area = 0;
-  for (Eigen::Index i = 0; i < f.size(); i += solid.dim()) area += f[i];
-  return area;
-}
-
-/// The force of a load at factor 1; that of a part without facets is shared evenly by its nodes.
-Eigen::VectorXd pattern_of(const Solid& solid, const StructureLoadCase& load) {
-  const MeshPart& part = *find_part(solid.mesh(), load.part);
-  if (load.kind == "pressure") return pressure_pattern(solid, part.facets, field_of(load.pressure));
-  const VectorAt vector = vector_of(load.vector);
-  if (load.kind == "traction") return traction_pattern(solid, part.facets, vector);
-  if (!part.facets.empty()) {
-    const double area = area_of(solid, part.facets);
-    return traction_pattern(solid, part.facets, [&](const Point& x) {
-      Point force = vector(x);
-      for (double& component : force) component /= area;
-      return force;
-    });
-  }
-  Eigen::VectorXd f = Eigen::VectorXd::Zero(solid.unknowns());
-  for (const int node : part.nodes) {
-    Point force = vector(solid.mesh().nodes[node]);
-    for (double& component : force) component /= static_cast<double>(part.nodes.size());
-    f += nodal_pattern(solid, node, force);
-  }
-  return f;
-}
-
-Loads loads_of(const Scene& scene, const Solid& solid, const StructureCase& given) {
-  Loads loads;
-  if (given.weight) loads.add(gravity_pattern(solid, scene.gravity));
-  for (const StructureLoadCase& load : given.loads) {
-    const auto factor = of_time(load.factor);
-    const bool steady = Formula(load.factor.text, load.factor.place, Variables::time).constant();
-    if (load.follows) {
-      const double pressure = Formula(load.pressure.text, load.pressure.place)(0, 0, 0, 0);
-      const auto follower = [factor, pressure](double t) { return pressure * factor(t); };
-      loads.add_follower(find_part(given.mesh, load.part)->facets, follower);
-    } else if (steady) {
-      loads.add(factor(0) * pattern_of(solid, load));
-    } else {
-      loads.add(pattern_of(solid, load), factor);
-    }
-  }
-  return loads;
-}
-
-Eigen::VectorXd at_nodes(const Solid& solid, const VectorFormula& formulas) {
-  const VectorAt value = vector_of(formulas);
-  Eigen::VectorXd all(solid.unknowns());
-  for (int i = 0; i < static_cast<int>(solid.mesh().nodes.size()); ++i) {
-    const Point at = value(solid.mesh().nodes[i]);
-    for (int d = 0; d < solid.dim(); ++d) all[solid.dim() * i + d] = at[d];
-  }
-  return all;
-}
 
 bool is_loaded(const Scene& scene, const StructureCase& given) {
   return !given.loads.empty() || (given.weight && scene.gravity != Point{0, 0, 0});
@@ -208,10 +76,10 @@ std::vector<Point> rows_of(const Solid& solid, const Eigen::VectorXd& values) {
 }  // namespace
 
 Structure::Structure(const Scene& scene, const StructureCase& given, double step)
-    : given_(given), solid_(solid_of(given)), supports_(supports_of(given)), loaded_(is_loaded(scene, given)) {
+    : given_(given), solid_(build_solid(given)), supports_(build_supports(given)), loaded_(is_loaded(scene, given)) {
   const MarchOptions options = march_options(step);
   march_ = built_at(given_.place, [&] {
-    return std::make_unique<March>(*solid_, supports_, loads_of(scene, *solid_, given_), options,
+    return std::make_unique<March>(*solid_, supports_, build_loads(scene, *solid_, given_), options,
                                    at_nodes(*solid_, given_.displacement), at_nodes(*solid_, given_.velocity));
   });
 }
@@ -293,7 +161,7 @@ std::vector<std::string> Structure::plan() const {
 }
 
 std::vector<std::string> Structure::frequency_lines() const {
-  constexpr int shown = 3, most_unknowns = 50000;  // beyond, the search would hold up the run
+  constexpr int shown = 3, most_unknowns = 20000;  // beyond, the search would hold up the run
   if (solid_->unknowns() > most_unknowns)
     return {fmt::format("          frequencies are not looked for with more than {} unknowns", most_unknowns)};
   std::vector<std::string> lines;

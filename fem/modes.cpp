@@ -9,7 +9,6 @@
 #include <random>
 
 #include "core/check.hpp"
-#include "fem/cholesky.hpp"
 
 namespace greenwater {
 namespace {
@@ -21,40 +20,27 @@ constexpr int most_blocks = 200;
 class Operator {
  public:
   Operator(const Solid& solid, const std::vector<int>& free, const Eigen::VectorXd& u)
-      : root_(solid.mass()(free).cwiseSqrt()), factor_(shifted(solid, free, u), places_of(solid, free)) {
-    if (factor_.definite()) return;  // an unstable state is not
-    other_.compute(part_of(solid.tangent(u), free));
-    require<NumericsError>(other_.info() == Eigen::Success, "the stiffness of the structure cannot be factorised");
-    shift_ = 0;
+      : root_(solid.mass()(free).cwiseSqrt()) {
+    // A body that is not held has modes of frequency 0, so K alone need not have an inverse.
+    Eigen::SparseMatrix<double> k = part_of(solid.tangent(u), free);
+    shift_ = 1e-9 * k.diagonal().sum() / root_.squaredNorm();
+    for (Eigen::Index i = 0; i < k.cols(); ++i) k.coeffRef(i, i) += shift_ * root_[i] * root_[i];
+    factor_.compute(k);
+    require<NumericsError>(factor_.info() == Eigen::Success, "the stiffness of the structure cannot be factorised");
   }
 
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& x) const {
     const Eigen::MatrixXd pushed = root_.asDiagonal() * x;
-    return root_.asDiagonal() * (factor_.definite() ? factor_.solve(pushed) : Eigen::MatrixXd(other_.solve(pushed)));
+    return root_.asDiagonal() * Eigen::MatrixXd(factor_.solve(pushed));
   }
 
   double shift() const { return shift_; }
   const Eigen::VectorXd& root_of_mass() const { return root_; }
 
  private:
-  /// A body that is not held has modes of frequency 0, so K alone need not have an inverse.
-  Eigen::SparseMatrix<double> shifted(const Solid& solid, const std::vector<int>& free, const Eigen::VectorXd& u) {
-    Eigen::SparseMatrix<double> k = part_of(solid.tangent(u), free);
-    shift_ = 1e-9 * k.diagonal().sum() / root_.squaredNorm();
-    for (Eigen::Index i = 0; i < k.cols(); ++i) k.coeffRef(i, i) += shift_ * root_[i] * root_[i];
-    return k;
-  }
-
-  static std::vector<std::array<double, 3>> places_of(const Solid& solid, const std::vector<int>& free) {
-    std::vector<std::array<double, 3>> places;
-    for (const int i : free) places.push_back(solid.mesh().nodes[i / solid.dim()]);
-    return places;
-  }
-
   Eigen::VectorXd root_;
   double shift_ = 0;
-  Cholesky factor_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> other_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
 Eigen::MatrixXd random_columns(Eigen::Index rows, Eigen::Index columns) {
