@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 
 #include "bench/measure.hpp"
@@ -123,7 +124,7 @@ void set_threads([[maybe_unused]] int threads) {
 /// How often work has to be done so that the clock does not matter. `work` takes that number.
 template <class Work>
 int enough(const Work& work) {
-  constexpr double wanted = 20;  // ms
+  constexpr double wanted = 5;  // ms
   work(1);
   const double once = ms_of([&] { work(2); }) / 2;
   return static_cast<int>(std::clamp(wanted / std::max(once, 1e-5), 2.0, 1e6));
@@ -157,25 +158,43 @@ Json row_of(const Variant& variant, const std::array<int, 3>& n, const Samples& 
   return row;
 }
 
-std::vector<Samples> measured(const BenchOptions& options, March& march, PlainProduct& product, int most) {
-  const auto marched = [&](int steps) { march.advance(steps); };
-  const auto multiplied = [&](int times) { product.run(times); };
-  std::vector<Samples> all;
-  for (const int threads : most > 1 ? std::vector{1, most} : std::vector{1}) {
-    set_threads(threads);
-    all.push_back({.threads = threads, .substeps = enough(marched)});
+/// A plate of one variant, and what was measured of it.
+class Subject {
+ public:
+  Subject(int size, Variant variant, int most)
+      : variant_(std::move(variant)),
+        divisions_(divisions_of(size)),
+        solid_(plate_mesh(divisions_, variant_.mesh == "distorted"), polycarbonate, variant_.options),
+        march_(solid_, clamped_foot(solid_.mesh()), {}, {.step = safe_step(divisions_)}, bent(solid_.mesh())),
+        product_(solid_.mesh(), variant_.mesh == "equal", bent(solid_.mesh())) {
+    for (const int threads : most > 1 ? std::vector{1, most} : std::vector{1}) {
+      set_threads(threads);
+      samples_.push_back({.threads = threads, .substeps = enough([&](int steps) { march_.advance(steps); })});
+    }
+    times_ = enough([&](int times) { product_.run(times); });
   }
-  const int times = enough(multiplied);
-  for (int round = 0; round < options.rounds; ++round) {
-    for (Samples& samples : all) {
+
+  void measure() {
+    for (Samples& samples : samples_) {
       set_threads(samples.threads);
-      samples.march.push_back(ms_of([&] { marched(samples.substeps); }) / samples.substeps);
-      samples.product.push_back(ms_of([&] { multiplied(times); }) / times);
+      samples.march.push_back(ms_of([&] { march_.advance(samples.substeps); }) / samples.substeps);
+      samples.product.push_back(ms_of([&] { product_.run(times_); }) / times_);
     }
   }
-  set_threads(most);
-  return all;
-}
+
+  void add_rows(Json& rows) const {
+    for (const Samples& samples : samples_) rows.push_back(row_of(variant_, divisions_, samples));
+  }
+
+ private:
+  Variant variant_;
+  std::array<int, 3> divisions_;
+  Solid solid_;
+  March march_;
+  PlainProduct product_;
+  std::vector<Samples> samples_;
+  int times_ = 0;
+};
 
 void print_head() {
   fmt::print("{:>10}  {:<11}{:<14}{:<14}{:>8}{:>14}{:>9}{:>9}{:>11}{:>8}\n", "elements", "mesh", "element",
@@ -191,17 +210,17 @@ void print_row(const Json& row) {
   std::fflush(stdout);
 }
 
-void measure(const BenchOptions& options, int size, const Variant& variant, int threads, Json& rows) {
-  const auto divisions = divisions_of(size);
-  const bool distorted = variant.mesh == "distorted";
-  const Solid solid(plate_mesh(divisions, distorted), polycarbonate, variant.options);
-  const Eigen::VectorXd u = bent(solid.mesh());
-  March march(solid, clamped_foot(solid.mesh()), {}, {.step = safe_step(divisions)}, u);
-  PlainProduct product(solid.mesh(), !distorted, u);
-  for (const Samples& samples : measured(options, march, product, threads)) {
-    rows.push_back(row_of(variant, divisions, samples));
-    print_row(rows.back());
-  }
+/// All variants of a size in turn.
+void measure(const BenchOptions& options, int size, int threads, Json& rows) {
+  std::vector<std::unique_ptr<Subject>> subjects;
+  for (const Variant& variant : variants_of(size))
+    subjects.push_back(std::make_unique<Subject>(size, variant, threads));
+  for (int round = 0; round < options.rounds; ++round)
+    for (const auto& subject : subjects) subject->measure();
+  const std::size_t before = rows.size();
+  for (const auto& subject : subjects) subject->add_rows(rows);
+  for (std::size_t i = before; i < rows.size(); ++i) print_row(rows[i]);
+  set_threads(threads);
 }
 
 }  // namespace
@@ -215,8 +234,7 @@ Json bench_fem(const BenchOptions& options) {
 #endif
   Json rows = Json::array();
   print_head();
-  for (const int size : sizes)
-    for (const Variant& variant : variants_of(size)) measure(options, size, variant, threads, rows);
+  for (const int size : sizes) measure(options, size, threads, rows);
   for (const Json& row : rows) {
     if (!row.contains("paper_run_s") || row["threads"] != 1) continue;
     fmt::print("2 million substeps of the paper's plate, {}, {}, {}: {} s\n", row["mesh"].get<std::string>(),
