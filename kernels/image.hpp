@@ -56,6 +56,11 @@ struct Image {
     return static_cast<real>(sum);
   }
 
+  /// The point of a wall's plane below the middle [m]: there a wall that moves has its say.
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> foot(const Panel& w) const {
+    return along(middle, -Sight<Dim>::side(w, middle), Sight<Dim>::as_vec(w.normal));
+  }
+
   /// Calls f(panel) for the walls of the path, the one next to the image first.
   template <class F>
   KOKKOS_INLINE_FUNCTION void for_each_wall_backwards(F f) const {
@@ -79,10 +84,9 @@ struct Image {
     return q.panel[0] == mirror->panel ? q.panel[1] : q.panel[0];
   }
 
-  // The wall's point nearest to the middle, from the panel's own point.
+  // The foot, from the panel's own point.
   KOKKOS_INLINE_FUNCTION Vec<Dim, coord> below(const Panel& w) const {
-    const auto foot = along(middle, -Sight<Dim>::side(w, middle), Sight<Dim>::as_vec(w.normal));
-    return difference(foot, Sight<Dim>::as_vec(w.point));
+    return difference(foot(w), Sight<Dim>::as_vec(w.point));
   }
 };
 

@@ -7,49 +7,106 @@
 namespace greenwater {
 namespace {
 
+// How the pressure of a particle pushes a body, by way of each image that it sees.
+template <int Dim>
+struct Pusher {
+  Around<Dim> near;
+  Weight w;
+  Read<VectorField> correction;
+  Read<FlagField> fixed;
+  coord touching, scale;
+  int body;
+
+  // Calls f(place, force per pressure) for every wall of the body on the path of every image of particle i.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void for_each(int i, F f) const {
+    const int number = near.images.number(i);
+    if (number == 0 || fixed(i)) return;
+    const auto xi = load<Dim>(near.x, i);
+    Symmetric<Dim, coord> C;
+    for (int k = 0; k < Symmetric<Dim, coord>::size; ++k) C.c[k] = correction(i, k);
+    for (int k = 0; k < number; ++k) {
+      const auto entry = near.images.place(i, k);
+      const Mirror& mirror = near.mirrors(near.images.mirror(entry));
+      const auto xj = load<Dim>(near.x, near.images.index(entry));
+      const auto r = difference(image_position(mirror, xj), xi);
+      const coord r2 = dot(r, r);
+      if (!(r2 > touching)) continue;
+      real weight = near.images.share(entry) * w(static_cast<real>(sqrt(r2)));
+      if (near.kept) weight = static_cast<float>(weight);  // as the divergence had it
+      const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(),
+                             along(xi, coord(0.5), difference(xj, xi))};
+      auto pull = product(C, r);
+      image.for_each_wall_backwards([&](const Panel& wall) {
+        const auto n = Sight<Dim>::as_vec(wall.normal);
+        const coord along_n = dot(pull, n);
+        if (wall.body == body) f(image.foot(wall), along(Vec<Dim, coord>{}, scale * weight / r2 * along_n, n));
+        pull = along(pull, -2 * along_n, n);
+      });
+    }
+  }
+};
+
+template <int Dim>
+Pusher<Dim> pusher_of(const Fluid& fluid, const Survey& survey, int body) {
+  const auto w = fluid.gradient.weight;
+  return {around_unmoved<Dim>(fluid, w),
+          w,
+          survey.divergence_correction,
+          survey.fixed,
+          1e-12 * fluid.spacing * fluid.spacing,
+          2 * std::pow(fluid.spacing, Dim) / fluid.gradient.reference.n0,
+          body};
+}
+
 template <int Dim>
 std::array<double, 3> wall_reaction_in(const Fluid& fluid, const Survey& survey, int body) {
-  const auto w = fluid.gradient.weight;
-  const auto near = around_unmoved<Dim>(fluid, w);
+  const auto pusher = pusher_of<Dim>(fluid, survey, body);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
-  const auto correction = Read<VectorField>(survey.divergence_correction);
-  const auto fixed = Read<FlagField>(survey.fixed);
-  const coord touching = 1e-12 * fluid.spacing * fluid.spacing;
-  const accum scale = 2 * std::pow(fluid.spacing, Dim) / fluid.gradient.reference.n0;
   accum fx = 0, fy = 0, fz = 0;
   Kokkos::parallel_reduce(
       "greenwater::wall_reaction", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, accum& sum_x, accum& sum_y, accum& sum_z) {
-        const int number = near.images.number(i);
-        if (number == 0 || fixed(i)) return;
-        const auto xi = load<Dim>(near.x, i);
-        Symmetric<Dim, coord> C;
-        for (int k = 0; k < Symmetric<Dim, coord>::size; ++k) C.c[k] = correction(i, k);
         Vec<Dim, coord> force{};
-        for (int k = 0; k < number; ++k) {
-          const auto place = near.images.place(i, k);
-          const Mirror& mirror = near.mirrors(near.images.mirror(place));
-          const auto xj = load<Dim>(near.x, near.images.index(place));
-          const auto r = difference(image_position(mirror, xj), xi);
-          const coord r2 = dot(r, r);
-          if (!(r2 > touching)) continue;
-          real weight = near.images.share(place) * w(static_cast<real>(sqrt(r2)));
-          if (near.kept) weight = static_cast<float>(weight);  // as the divergence had it
-          const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(), {}};
-          auto pull = product(C, r);
-          image.for_each_wall_backwards([&](const Panel& wall) {
-            const auto n = Sight<Dim>::as_vec(wall.normal);
-            const coord along_n = dot(pull, n);
-            if (wall.body == body) force = along(force, weight / r2 * along_n, n);
-            pull = along(pull, -2 * along_n, n);
-          });
-        }
+        pusher.for_each(
+            i, [&](const Vec<Dim, coord>&, const Vec<Dim, coord>& push) { force = along(force, coord(1), push); });
         sum_x += p(i) * force[0];
         sum_y += p(i) * force[1];
         if (Dim == 3) sum_z += p(i) * force[Dim - 1];
       },
       fx, fy, fz);
-  return {scale * fx, scale * fy, scale * fz};
+  return {fx, fy, fz};
+}
+
+template <int Dim>
+std::vector<WallPush> wall_pushes_in(const Fluid& fluid, const Survey& survey, int body) {
+  const auto pusher = pusher_of<Dim>(fluid, survey, body);
+  const int count = fluid.particles.count;
+  const IndexField first("greenwater::wall_push_first", count + 1);
+  Kokkos::parallel_scan(
+      "greenwater::wall_push_count", Range(0, count + 1), KOKKOS_LAMBDA(const int i, int& sum, const bool final) {
+        if (final) first(i) = sum;
+        if (i == count) return;
+        pusher.for_each(i, [&](const Vec<Dim, coord>&, const Vec<Dim, coord>&) { ++sum; });
+      });
+  int number = 0;
+  Kokkos::deep_copy(number, Kokkos::subview(first, count));
+  Kokkos::View<WallPush*, Device> pushes("greenwater::wall_pushes", number);
+  Kokkos::parallel_for(
+      "greenwater::wall_pushes", Range(0, count), KOKKOS_LAMBDA(const int i) {
+        int at = first(i);
+        pusher.for_each(i, [&](const Vec<Dim, coord>& place, const Vec<Dim, coord>& push) {
+          WallPush& made = pushes(at++);
+          made.particle = i;
+          for (int d = 0; d < Dim; ++d) {
+            made.place[d] = place[d];
+            made.push[d] = push[d];
+          }
+        });
+      });
+  std::vector<WallPush> host(number);
+  Kokkos::deep_copy(Kokkos::View<WallPush*, Kokkos::HostSpace>(host.data(), number), pushes);
+  return host;
 }
 
 }  // namespace
@@ -57,6 +114,11 @@ std::array<double, 3> wall_reaction_in(const Fluid& fluid, const Survey& survey,
 std::array<double, 3> wall_reaction(const Fluid& fluid, const Survey& survey, int body) {
   if (fluid.rows.images.number.extent(0) == 0) return {};
   return fluid.particles.dim == 2 ? wall_reaction_in<2>(fluid, survey, body) : wall_reaction_in<3>(fluid, survey, body);
+}
+
+std::vector<WallPush> wall_pushes(const Fluid& fluid, const Survey& survey, int body) {
+  if (fluid.rows.images.number.extent(0) == 0) return {};
+  return fluid.particles.dim == 2 ? wall_pushes_in<2>(fluid, survey, body) : wall_pushes_in<3>(fluid, survey, body);
 }
 
 }  // namespace greenwater

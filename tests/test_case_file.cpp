@@ -354,10 +354,10 @@ TEST_CASE("--set changes, adds, and is checked like the file", "[unit][case]") {
 
 TEST_CASE("unknown keys are reported together, each with what was meant", "[unit][case]") {
   const std::string text = complaint_about(with("spacing = 0.02", "spacing = 0.02\nviscosty = 1\nmax_iterations = 5") +
-                                           "[structure]\nname = \"plate\"\n");
+                                           "[wave]\nname = \"plate\"\n");
   CHECK(contains(text, "unknown key \"viscosty\" in [mps]"));
   CHECK(contains(text, "unknown key \"max_iterations\" in [mps]; it is a key of [mps.pressure]"));
-  CHECK(contains(text, "unknown table [structure]; known here: "));
+  CHECK(contains(text, "unknown table [wave]; known here: "));
 }
 
 TEST_CASE("slips in TOML get a hint", "[unit][case]") {

@@ -247,6 +247,41 @@ TEST_CASE("the wall's reaction does the fluid's work, and a constant pressure gi
   CHECK(force[1] == Approx(-1000 * 1.2).epsilon(1e-6));  // on the floor
 }
 
+TEST_CASE("what pushes a wall is what the wall does to the divergence, place by place", "[unit][default]") {
+  SurveyOptions options;
+  options.loads = true;
+  const auto speed = [](const std::array<coord, 3>& x) {  // turns and bends each wall in its own way
+    return std::array<double, 3>{0.3 + 0.5 * x[1] - x[2], 0.4 * x[0] - 0.2, 0.7 - 0.6 * x[0]};
+  };
+  for (const auto& [dim, radius, jitter] : kinds) {
+    INFO(dim << "-D, radius " << radius);
+    Fluid fluid = tank(dim, radius, jitter);
+    for (real& g_d : fluid.gravity) g_d = 0;
+    for (WallFace& face : fluid.faces.faces)
+      for (int e = 0; e < dim; ++e) face.corner[e].velocity = speed(face.corner[e].position);
+    make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), l0);
+    fluid.rows.build(fluid.particles, fluid.grid, fluid.walls, row_options(fluid));
+    set_pressure(fluid, [&](const auto& x) { return 1000 * (1.3 - x[dim - 1]); });
+    const Survey found = surveyed(fluid, options);
+    const auto b = host(found.rhs);
+    const auto p = host(fluid.particles.pressure);
+    std::vector<double> divergence(fluid.particles.count, 0);
+    std::array<double, 3> sum{};
+    for (const WallPush& push : wall_pushes(fluid, found, 0)) {
+      const auto v = speed(push.place);
+      for (int d = 0; d < dim; ++d) {
+        divergence[push.particle] += push.push[d] * v[d] / std::pow(l0, dim);
+        sum[d] += p(push.particle) * push.push[d];
+      }
+    }
+    // The fluid rests: all divergence is the wall's.
+    for (int i = 0; i < fluid.particles.count; ++i)
+      CHECK(divergence[i] == Approx(-b(i) * dt / fluid.rho).epsilon(1e-9).margin(1e-9));
+    const auto force = wall_reaction(fluid, found, 0);
+    for (int d = 0; d < dim; ++d) CHECK(sum[d] == Approx(force[d]).epsilon(1e-9));
+  }
+}
+
 TEST_CASE("drops that nobody is near fly as the law of falling says", "[unit][default]") {
   Fluid fluid = fluid_at({{0, 0, 0}, {3, 0, 0}, {3.05, 0.05, 0}}, {}, standard(2, 3.1));
   fluid.gravity[1] = -g;
