@@ -6,6 +6,7 @@
 #include "app/plan.hpp"
 #include "app/scene.hpp"
 #include "io/suggest.hpp"
+#include "tests/case_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/meshes.hpp"
 #include "tests/program.hpp"
@@ -15,15 +16,10 @@ using namespace greenwater::test;
 
 namespace {
 
-Scene scene_of(const std::string& text, const std::vector<CaseOption>& options = {}) {
-  CaseFile file(text, "case.toml", options);
-  return read_scene(file);
-}
-
 /// The complaint about a case; empty when there is none.
 std::string complaint_about(const std::string& text, const std::vector<CaseOption>& options = {}) {
   try {
-    scene_of(text, options);
+    scene_of_text(text, options);
   } catch (const CaseError& error) {
     return error.what();
   }
@@ -336,12 +332,12 @@ wall = "hull"
 }
 
 TEST_CASE("--set changes, adds, and is checked like the file", "[unit][case]") {
-  CHECK(scene_of(small_case(), {set_option("mps.spacing=5 mm")}).mps.spacing == 0.005);
-  CHECK(scene_of(small_case(), {set_option("mps.spacing=.005")}).mps.spacing == 0.005);
-  CHECK(scene_of(small_case(), {set_option("probe.1.every_time=0.5")}).probes[1].every_time == 0.5);
-  CHECK(scene_of(small_case(), {set_option("case.name=other")}).name == "other");
-  CHECK(scene_of(small_case(), {set_option("effects.viscosity.kinematic=1e-6")}).viscosity.size() == 1);
-  CHECK(scene_of(small_case(), {set_option("fluid.0.region.max=[0.2, 0.2]")}).fluid.max[0] == 0.2);
+  CHECK(scene_of_text(small_case(), {set_option("mps.spacing=5 mm")}).mps.spacing == 0.005);
+  CHECK(scene_of_text(small_case(), {set_option("mps.spacing=.005")}).mps.spacing == 0.005);
+  CHECK(scene_of_text(small_case(), {set_option("probe.1.every_time=0.5")}).probes[1].every_time == 0.5);
+  CHECK(scene_of_text(small_case(), {set_option("case.name=other")}).name == "other");
+  CHECK(scene_of_text(small_case(), {set_option("effects.viscosity.kinematic=1e-6")}).viscosity.size() == 1);
+  CHECK(scene_of_text(small_case(), {set_option("fluid.0.region.max=[0.2, 0.2]")}).fluid.max[0] == 0.2);
   const std::string unknown = complaint_about(small_case(), {set_option("mps.spcing=0.005")});
   CHECK(contains(unknown, "--set mps.spcing=0.005: error: unknown key \"spcing\" in [mps]; did you mean \"spacing\"?"));
   CHECK(contains(complaint_about(small_case(), {set_option("probe.2.x=1")}), "2 item(s), numbered from 0"));
@@ -349,7 +345,7 @@ TEST_CASE("--set changes, adds, and is checked like the file", "[unit][case]") {
   CHECK(contains(complaint_about(small_case(), {set_option("mps.spacing.x=1")}), "has no key"));
   CHECK(contains(complaint_about(small_case(), {set_option("mps.spacing=0")}), "--set mps.spacing=0: error: "));
   CHECK_THROWS_AS(set_option("mps.spacing"), CaseError);
-  CHECK_THROWS_AS(scene_of(small_case(), {set_option("mps..spacing=1")}), CaseError);
+  CHECK_THROWS_AS(scene_of_text(small_case(), {set_option("mps..spacing=1")}), CaseError);
 }
 
 TEST_CASE("unknown keys are reported together, each with what was meant", "[unit][case]") {
@@ -484,7 +480,7 @@ TEST_CASE("a case in 3-D that makes no sense is refused", "[unit][case]") {
     text.replace(text.find(before), before.size(), after);
     std::string said;
     try {
-      scene_of(text);
+      scene_of_text(text);
     } catch (const Error& error) {
       said = error.what();
     }
@@ -505,7 +501,7 @@ TEST_CASE("the nearest word is found, and nothing far away", "[unit][case]") {
 }
 
 TEST_CASE("the plan counts what will be made", "[unit][case]") {
-  const Plan plan = plan_of(scene_of(small_case(), {set_option("fluid.0.region.max=[0.3, 0.1]")}));
+  const Plan plan = plan_of(scene_of_text(small_case(), {set_option("fluid.0.region.max=[0.3, 0.1]")}));
   CHECK(plan.particles == 75);  // 0.3 / 0.02 is 14.999...
   CHECK(plan.steps == 9);
   CHECK(plan.frames == 5);
@@ -514,7 +510,7 @@ TEST_CASE("the plan counts what will be made", "[unit][case]") {
 
 TEST_CASE("the plan warns of what is allowed and hardly meant", "[unit][case]") {
   const auto warnings = [](const std::string& more) {
-    const Scene scene = scene_of(tank_3d() + more);
+    const Scene scene = scene_of_text(tank_3d() + more);
     std::string all;
     for (const std::string& warning : plan_of(scene).warnings) all += warning + '\n';
     return all;
@@ -528,7 +524,7 @@ TEST_CASE("the plan warns of what is allowed and hardly meant", "[unit][case]") 
 
 TEST_CASE("the plan counts a ball by its volume", "[unit][case]") {
   const auto particles = [](const std::string& text, const std::string& region) {
-    const Plan plan = plan_of(scene_of(text, {set_option("fluid.0.region=" + region)}));
+    const Plan plan = plan_of(scene_of_text(text, {set_option("fluid.0.region=" + region)}));
     CHECK(!plan.at_most);
     return plan.particles;
   };
@@ -585,7 +581,7 @@ time_step = 0.002
 }
 
 TEST_CASE("the plan of steps that adapt knows the fewest", "[unit][case]") {
-  const Scene scene = scene_of(small_case(), {set_option("mps.adaptive=true"), set_option("mps.time_step=0.02")});
+  const Scene scene = scene_of_text(small_case(), {set_option("mps.adaptive=true"), set_option("mps.time_step=0.02")});
   const Plan plan = plan_of(scene);
   const double dt = 0.25 * std::sqrt(0.02 / 9.81);
   CHECK(plan.steps == std::ceil(0.02 / dt));
@@ -598,7 +594,7 @@ TEST_CASE("the plan of steps that adapt knows the fewest", "[unit][case]") {
 }
 
 TEST_CASE("the plan counts in 3-D", "[unit][case]") {
-  const Scene scene = scene_of(tank_3d());
+  const Scene scene = scene_of_text(tank_3d());
   const Plan plan = plan_of(scene);
   CHECK(plan.particles == 20 * 10 * 4);
   CHECK(!plan.at_most);

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "app/structure_simulation.hpp"
+#include "tests/case_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/program.hpp"
 
@@ -10,11 +11,6 @@ using namespace greenwater;
 using namespace greenwater::test;
 
 namespace {
-
-Scene scene_of(const std::string& text, const std::vector<CaseOption>& options = {}) {
-  CaseFile file(text, "case.toml", options);
-  return read_scene(file);
-}
 
 Scene plate_scene(const std::string& name) {
   CaseFile file(std::string(GREENWATER_SOURCE_DIR) + "/cases/plate/" + name + ".toml", {});
@@ -51,7 +47,7 @@ every_time = 0.0005
 
 std::string complaint_about(const std::string& text) {
   try {
-    StructureSimulation simulation(scene_of(text));
+    StructureSimulation simulation(scene_of_text(text));
   } catch (const CaseError& error) {
     return error.what();
   }
@@ -105,7 +101,7 @@ TEST_CASE("a stress probe on the face of a plate reads the bending stress there"
   for (const std::string side : {"middle", "left", "right"})
     text += "[[probe]]\nname = \"" + side + "\"\nkind = \"structure_stress\"\ncomponent = \"yy\"\n" +
             "height_fraction = 0.55\n" + (side == "middle" ? "" : "side = \"" + side + "\"\n");
-  StructureSimulation simulation(scene_of(text));
+  StructureSimulation simulation(scene_of_text(text));
   const double face = 3.43e9 / (1 - 0.37 * 0.37) * 0.0001 * 0.003;
   CHECK(simulation.sample(0) == Approx(0).margin(0.01 * face));
   CHECK(simulation.sample(1) == Approx(face).epsilon(0.01));
@@ -136,7 +132,7 @@ TEST_CASE("a plate stands where the case puts it, in 2-D and 3-D scenes", "[unit
       text = replaced(text, "name = \"small\"", "name = \"small\"\ndimension = 3");
       text = replaced(text, "base = [0.6, 0.0]", "base = [0.6, 0.0, 0.0]");
     }
-    const Scene scene = scene_of(text);
+    const Scene scene = scene_of_text(text);
     const SolidMesh& mesh = scene.structures.at(0).mesh;
     const std::size_t up = in_space ? 2 : 1, across = in_space ? 1 : 2;
     const auto [foot_low, foot_high] = bounds_of(*find_part(mesh, "bottom"), mesh);
@@ -198,7 +194,7 @@ part = "bottom"
 axes = ["x"]
 displacement = "1e-4 * sin(2000 * t)"
 )toml");
-  StructureSimulation moving(scene_of(shaken));
+  StructureSimulation moving(scene_of_text(shaken));
   for (int k = 0; k < 5; ++k) moving.step();
   const auto& u = moving.structure(0).march().displacement();
   for (const int node : find_part(moving.structure(0).solid().mesh(), "bottom")->nodes)
@@ -211,7 +207,7 @@ kind = "force"
 force = [2.0, 0.0]
 factor = "t < 0.0005 ? 0 : 1"
 )") + "[[probe]]\nname = \"shear\"\nkind = \"structure_reaction\"\npart = \"bottom\"\n";
-  StructureSimulation force(scene_of(replaced(pushed, "end = 0.001", "end = 0.1")));
+  StructureSimulation force(scene_of_text(replaced(pushed, "end = 0.001", "end = 0.1")));
   for (int k = 0; k < 5; ++k) force.step();
   CHECK(force.sample(0) == 0);
   for (int k = 0; k < 800; ++k) force.step();
@@ -245,7 +241,7 @@ TEST_CASE("structures that cannot be are refused, with place and cure", "[unit][
 }
 
 TEST_CASE("a structure that nothing holds may run, but is told of", "[unit][structure][bad]") {
-  StructureSimulation simulation(scene_of(small_plate("", "clamp = []\n")));
+  StructureSimulation simulation(scene_of_text(small_plate("", "clamp = []\n")));
   CHECK(contains(joined(simulation.plan()), "held nowhere and loaded"));
   for (int k = 0; k < 10; ++k) simulation.step();
   const auto& u = simulation.structure(0).march().displacement();
