@@ -154,7 +154,7 @@ struct MpsCase {
   PressureCase pressure;
 };
 
-/// How far a structure's material, elements and supports go; where it stands and of what shape, its mesh tells.
+/// Where a structure is held, and how what holds it moves.
 struct SupportCase {
   Place place;
   std::string part;                           // of the mesh; empty: the nodes in a box
@@ -163,6 +163,7 @@ struct SupportCase {
   std::optional<NumberFormula> displacement;  // of t [m], along each of the axes; absent: held
 };
 
+/// What acts on a structure: a field over a part of its surface, times a factor in time.
 struct StructureLoadCase {
   Place place;
   std::string part;               // of the mesh: its facets; of a force, its nodes
@@ -173,6 +174,7 @@ struct StructureLoadCase {
   NumberFormula factor{"1", {}};  // in t
 };
 
+/// An elastic body.
 struct StructureCase {
   std::string name, material;
   Place place;
