@@ -42,7 +42,32 @@ void gather_extra(const VectorField& from, const IndexField& order, const Vector
       });
 }
 
+template <class Field>
+void copy_field(const Field& from, Field& to) {
+  if (to.extent(0) != from.extent(0))
+    to = Field(Kokkos::view_alloc(from.label() + "_copy", Kokkos::WithoutInitializing), from.layout());
+  Kokkos::deep_copy(to, from);
+}
+
 }  // namespace
+
+void copy(const Particles& from, Particles& to) {
+  to.dim = from.dim;
+  to.count = from.count;
+  copy_field(from.id, to.id);
+  copy_field(from.position, to.position);
+  copy_field(from.velocity, to.velocity);
+  copy_field(from.acceleration, to.acceleration);
+  copy_field(from.pressure, to.pressure);
+  copy_field(from.number_density, to.number_density);
+  copy_field(from.surface, to.surface);
+  to.extras.resize(from.extras.size());
+  for (std::size_t k = 0; k < from.extras.size(); ++k) {
+    to.extras[k].name = from.extras[k].name;
+    to.extras[k].unit = from.extras[k].unit;
+    copy_field(from.extras[k].values, to.extras[k].values);
+  }
+}
 
 Particles make_particles(int dim, int count) {
   Particles p;

@@ -35,6 +35,9 @@ constexpr int padded(int count) { return (count + 63) / 32 * 32; }
 /// Room for `count` particles, all fields zero, ids 0, 1, 2 ...
 Particles make_particles(int dim, int count);
 
+/// Makes `to` a copy of all fields, in its own memory, which is kept and only grown.
+void copy(const Particles& from, Particles& to);
+
 /// Adds a vector field of zeros and returns its place in `extras`.
 int add_extra(Particles& particles, const std::string& name, const std::string& unit);
 

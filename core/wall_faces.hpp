@@ -24,6 +24,7 @@ struct WallFace {
 struct WallBody {
   std::string name;      // as in the case file
   bool no_slip = false;  // viscous fluid sticks to it
+  bool bends = false;    // each of its faces goes its own way
 };
 
 struct WallFaces {

@@ -23,14 +23,19 @@ struct AddedLists {
 
 class AddedTerm {
  public:
-  /// D, for particles as they are sorted now, and C(row, column), as many rows as unknowns, row by row. D C D^T has the
-  /// unit of the pressure operator [1/m^2]. Memory is kept and only grown. Entries of one particle and unknown add up.
-  void set(int unknowns, std::vector<AddedEntry> D, const std::vector<real>& C);
+  /// D, for particles as they are sorted now. Memory is kept and only grown. Entries of one particle and unknown add up.
+  void set_rows(int unknowns, const std::vector<AddedEntry>& D);
+  /// C(row, column), as many rows as unknowns, row by row. D C D^T has the unit of the pressure operator [1/m^2].
+  void set_answer(const std::vector<real>& C);
 
-  bool any() const { return unknowns_ > 0; }
+  int unknowns() const { return unknowns_; }
 
-  /// Ap = Ap + D C D^T p where nothing is fixed; p must be 0 where it is.
-  void add_product(const FlagField& fixed, const ScalarField& p, const ScalarField& Ap) const;
+  /// felt = D^T p, as long as there are unknowns.
+  void feel(const ScalarField& p, const ScalarField& felt) const;
+  /// b += factor D v where nothing is fixed.
+  void add_source(const FlagField& fixed, real factor, const ScalarField& v, const ScalarField& b) const;
+  /// Ap = Ap + D C D^T p where nothing is fixed; p must be 0 where it is. Returns p . D C D^T p.
+  accum add_product(const FlagField& fixed, const ScalarField& p, const ScalarField& Ap) const;
 
  private:
   int unknowns_ = 0;

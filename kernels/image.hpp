@@ -13,7 +13,7 @@ struct Image {
   const Mirror* mirror = nullptr;  // null: there is none
   const Panel* panels = nullptr;
   const Joint* joints = nullptr;
-  Vec<Dim, coord> middle{};  // between image's particle and the one that sees it [m]: walls that move do so as below it
+  Vec<Dim, coord> particle{}, seen_from{};  // where the image's particle is, and the one that sees it [m]
 
   /// u of the image of a velocity u. At a wall, with the walls' normal velocity, it slips freely; where the fluid sticks
   /// to the wall and `sticking` is asked for u' = 2 u_w - u.
@@ -27,8 +27,8 @@ struct Image {
       }
       return v;
     }
-    for_each_wall([&](const Panel& w) {
-      const auto u_w = w.moves ? w.velocity.at(below(w)) : Vec<Dim, coord>{};
+    for_each_wall_from_particle([&](const Panel& w, const Vec<Dim, coord>& at) {
+      const auto u_w = w.moves ? w.velocity.at(on(w, at)) : Vec<Dim, coord>{};
       coord normal = 0;
       for (int d = 0; d < Dim; ++d) normal += (u_w[d] - v[d]) * w.normal[d];
       for (int d = 0; d < Dim; ++d)
@@ -45,48 +45,79 @@ struct Image {
     coord sum = 0;
     for (int d = 0; d < Dim; ++d) sum += g[d] * way[d];
     if (mirror->moves) {
-      auto at = x;
-      for_each_wall([&](const Panel& w) {
-        const coord away = -2 * Sight<Dim>::side(w, at);
+      auto y = x;
+      for_each_wall_from_particle([&](const Panel& w, const Vec<Dim, coord>& at) {
+        const coord away = -2 * Sight<Dim>::side(w, y);
         const auto n = Sight<Dim>::as_vec(w.normal);
-        at = along(at, away, n);
-        sum -= away * dot(w.acceleration.at(below(w)), n);
+        y = along(y, away, n);
+        sum -= away * dot(w.acceleration.at(on(w, at)), n);
       });
     }
     return static_cast<real>(sum);
   }
 
-  /// The point of a wall's plane below the middle [m]: there a wall that moves has its say.
-  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> foot(const Panel& w) const {
-    return along(middle, -Sight<Dim>::side(w, middle), Sight<Dim>::as_vec(w.normal));
-  }
-
-  /// Calls f(panel) for the walls of the path, the one next to the image first.
+  /// Calls f(panel, place) for the walls of the path as it comes to them from the one that sees, with the place of the
+  /// wall's plane where it is thrown back [m]. The length of a path changes with the wall's normal speed there: so there
+  /// a wall that moves has its say, and the divergence of a flow that turns with its walls is 0 to the last digit.
   template <class F>
-  KOKKOS_INLINE_FUNCTION void for_each_wall_backwards(F f) const {
-    int others = 0;
-    while (others < 3 && mirror->also[others] >= 0) ++others;
-    for (int e = others; e > 0; --e) f(panels[mirror->also[e - 1]]);
-    for (int k = 0; k < mirror->length; ++k) f(panels[wall(k)]);
+  KOKKOS_INLINE_FUNCTION void for_each_wall(F f) const {
+    walk(seen_from, image_position(*mirror, particle), 0, 1, f);
   }
 
  private:
-  // The walls of the path as the image is made: the one next to the particle first.
+  // The same path backwards.
   template <class F>
-  KOKKOS_INLINE_FUNCTION void for_each_wall(F f) const {
-    for (int k = mirror->length; k > 0; --k) f(panels[wall(k - 1)]);
-    for (int e = 0; e < 3 && mirror->also[e] >= 0; ++e) f(panels[mirror->also[e]]);
+  KOKKOS_INLINE_FUNCTION void for_each_wall_from_particle(F f) const {
+    Vec<Dim, coord> image_of_seer{};  // the map is orthogonal
+    for (int d = 0; d < Dim; ++d)
+      for (int e = 0; e < Dim; ++e) image_of_seer[d] += mirror->map[e][d] * (seen_from[e] - mirror->shift[e]);
+    walk(particle, image_of_seer, mirror->length - 1, -1, f);
   }
 
-  KOKKOS_INLINE_FUNCTION int wall(int k) const {
+  // Follows the straight line to an image, and reflects that at every wall that it meets; walls of the corner in turn,
+  // beginning with number `next`, the others whenever the line comes to them.
+  template <class F>
+  KOKKOS_INLINE_FUNCTION void walk(Vec<Dim, coord> at, Vec<Dim, coord> image, int next, int turn, F f) const {
+    bool met[3] = {};
+    for (int in_turn = mirror->length;;) {
+      const Panel* wall = in_turn > 0 ? &panels[wall_of_corner(next)] : nullptr;
+      coord part = wall ? way_to(*wall, at, image) : coord(0);
+      int other = -1;
+      for (int e = 0; e < 3 && mirror->also[e] >= 0; ++e) {
+        if (met[e]) continue;
+        const coord t = way_to(panels[mirror->also[e]], at, image);
+        if (wall && t >= part) continue;
+        other = e;
+        part = t;
+        wall = &panels[mirror->also[e]];
+      }
+      if (!wall) return;
+      if (other >= 0) met[other] = true;
+      if (other < 0) {
+        --in_turn;
+        next += turn;
+      }
+      at = along(at, part, difference(image, at));
+      f(*wall, at);
+      image = along(image, -2 * Sight<Dim>::side(*wall, image), Sight<Dim>::as_vec(wall->normal));
+    }
+  }
+
+  // Which part of the line from a to b is before the wall's plane.
+  KOKKOS_INLINE_FUNCTION static coord way_to(const Panel& w, const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) {
+    const coord from = Sight<Dim>::side(w, a), between = from - Sight<Dim>::side(w, b);
+    return between == 0 ? coord(0.5) : from / between;
+  }
+
+  KOKKOS_INLINE_FUNCTION int wall_of_corner(int k) const {
     if (k % 2 == 0) return mirror->panel;
     const Joint& q = joints[mirror->joint];
     return q.panel[0] == mirror->panel ? q.panel[1] : q.panel[0];
   }
 
-  // The foot, from the panel's own point.
-  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> below(const Panel& w) const {
-    return difference(foot(w), Sight<Dim>::as_vec(w.point));
+  // A place as the wall's fields want it: from the panel's own point.
+  KOKKOS_INLINE_FUNCTION static Vec<Dim, coord> on(const Panel& w, const Vec<Dim, coord>& at) {
+    return difference(at, Sight<Dim>::as_vec(w.point));
   }
 };
 

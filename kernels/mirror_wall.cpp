@@ -89,7 +89,33 @@ void bin(MirrorWalls& made, const WallPanels& walls, const GridShape& grid, int 
   upload(made.reach, "greenwater::mirror_reach", reach);
 }
 
+template <int Dim>
+void set_wall_motion_in(const MirrorWalls& walls, const CornerMotion& motion) {
+  const auto panels = walls.panel;
+  const auto pieces = walls.piece;
+  const CornerMotion go = motion;
+  Kokkos::parallel_for(
+      "greenwater::wall_motion", Range(0, walls.panels), KOKKOS_LAMBDA(const int k) {
+        Panel& panel = panels(k);
+        if (panel.body != go.body) return;
+        coord velocity[3][3] = {}, acceleration[3][3] = {};
+        for (int e = 0; e < Dim; ++e) {
+          const int c = go.corner_of_face(Dim * (panel.face - go.first_face) + e);
+          for (int d = 0; d < Dim; ++d) {
+            velocity[e][d] = go.velocity(c, d);
+            acceleration[e][d] = go.acceleration(c, d);
+          }
+        }
+        panel.velocity = linear_field<Dim>(pieces(panel.first_piece), velocity);
+        panel.acceleration = linear_field<Dim>(pieces(panel.first_piece), acceleration);
+      });
+}
+
 }  // namespace
+
+void set_wall_motion(const MirrorWalls& walls, int dim, const CornerMotion& motion) {
+  dim == 2 ? set_wall_motion_in<2>(walls, motion) : set_wall_motion_in<3>(walls, motion);
+}
 
 void make_mirror_walls(MirrorWalls& made, const WallFaces& faces, const GridShape& grid, coord spacing) {
   if (faces.faces.empty()) return;

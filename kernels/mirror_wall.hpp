@@ -9,6 +9,9 @@
 // n = n^0 there too. Every path is the same backwards; and as each pair is always looked at from the one with the lower
 // index, both get the same answer to the last bit, which makes the pressure matrix symmetric.
 //
+// A wall that bends is cut into many panels, each with its own speed. A path by way of another wall's corner and the
+// second or third of them (2-D) is made with the plane of the first: so near to a corner they are as good as flat.
+//
 // Where a path passes close to the edge of a corner that is not right-angled, a slightly other path goes round the edge
 // the other way and ends elsewhere. There both images count in shares that make up one, so that nothing jumps when a
 // particle moves; in a right-angled corner both are the same image.
@@ -39,12 +42,36 @@ struct Piece {
   coord inward[3][3];  // unit, in the panel: a point q of the panel is in it when (q - corner[e]) . inward[e] >= 0
 };
 
+/// The field that has these values at the corners of a piece, from its first corner; along the normal it does not change.
+template <int Dim>
+KOKKOS_INLINE_FUNCTION LinearField linear_field(const Piece& piece, const coord (&value)[3][3]) {
+  coord way[2][3] = {}, product[2][2] = {};  // along two sides, and their inner products
+  for (int a = 0; a < Dim - 1; ++a)
+    for (int d = 0; d < Dim; ++d) way[a][d] = piece.corner[a + 1][d] - piece.corner[0][d];
+  for (int a = 0; a < 2; ++a)
+    for (int b = 0; b < 2; ++b)
+      for (int d = 0; d < Dim; ++d) product[a][b] += way[a][d] * way[b][d];
+  if (Dim == 2) product[1][1] = 1;
+  const coord per_det = 1 / (product[0][0] * product[1][1] - product[0][1] * product[1][0]);
+  LinearField field{};
+  for (int d = 0; d < Dim; ++d) {
+    field.value[d] = value[0][d];
+    for (int e = 0; e < Dim; ++e)
+      for (int a = 0; a < Dim - 1; ++a) {
+        const coord dual = product[1 - a][1 - a] * way[a][e] - product[0][1] * way[1 - a][e];
+        field.gradient[d][e] += (value[a + 1][d] - value[0][d]) * dual * per_det;
+      }
+  }
+  return field;
+}
+
 /// A stretch of a panel's rim (2-D: an end, a = b).
 struct Rim {
   coord a[3], b[3];  // [m]
 };
 
-/// A plane stretch of wall: all pieces that lie in one plane, touch and move alike. In it one particle has one image.
+/// A plane stretch of wall: all pieces that lie in one plane, touch and move alike, but of a body that bends each on its
+/// own. In it one particle has one image.
 struct Panel {
   coord normal[3];              // unit
   coord point[3];               // its first corner [m]
@@ -53,12 +80,14 @@ struct Panel {
   int first_rim, last_rim;      // its rim; a panel of very many pieces has none noted, and first_rim = -1
   int first_joint, last_joint;  // its corners, as places in MirrorWalls::joint_of_panel
   int body;                     // named geometry
-  bool no_slip, moves;
+  int face;                     // the first of its faces
+  bool no_slip, moves, bends;
   LinearField velocity;      // [m/s], mean over the step that led here
   LinearField acceleration;  // [m/s^2]
 };
 
-/// The inside of a corner between two panels that do not stand at right angles; its angle is at most 180 degrees.
+/// The inside of a corner between two panels that do not stand at right angles; its angle is at most 180 degrees, or on the
+/// outer side of a wall that bends a little more.
 struct Joint {
   int panel[2];
   coord point[3], edge[3];  // a point of the edge [m], and its direction (2-D: along z)
@@ -109,6 +138,17 @@ struct MirrorWalls {
                                          // after the last cell: all of them
   coord tolerance = 0;                   // panels are that much longer than they are [m]
 };
+
+/// How the corners of one body's faces go, on the device: all its faces bend, and they stand one after the other.
+struct CornerMotion {
+  int body = 0, first_face = 0;
+  IndexField corner_of_face;  // (dim f + e) the corner that corner e of face first_face + f is
+  CoordField velocity;        // (corner, d) mean over the step [m/s]
+  CoordField acceleration;    // (corner, d) [m/s^2]
+};
+
+/// Gives the panels of that body these velocities and accelerations; where they are stays. One launch.
+void set_wall_motion(const MirrorWalls& walls, int dim, const CornerMotion& motion);
 
 /// Makes panels, joints and mirrors of the faces as they stand now and bins them into the grid; memory is kept and only
 /// grown. Throws CaseError when two panels meet at less than 5 degrees.

@@ -68,7 +68,7 @@ struct Around {
         const auto way = difference(image_position(*m, to), from);
         for (int d = 0; d < Dim; ++d) set_lane(r[d], l, static_cast<real>(way[d]));
         set_lane(image.share, l, images.share(place + l));
-        image.image[l] = {m, panels.data(), joints.data(), along(from, coord(0.5), difference(to, from))};
+        image.image[l] = {m, panels.data(), joints.data(), to, from};
       }
       f(j, r, image);
     });

@@ -24,8 +24,12 @@ class Plain : public PressureSolver {
       : preconditioner_(std::move(preconditioner)), cg_(options) {}
 
   SolveReport solve(PressureSystem& system, const ScalarField& p) override {
-    clear_unless_finite(p, system.count());
     preconditioner_->update(system);
+    return solve_again(system, p);
+  }
+
+  SolveReport solve_again(PressureSystem& system, const ScalarField& p) override {
+    clear_unless_finite(p, system.count());
     const SolveReport report = cg_.solve(system, *preconditioner_, p);
     if (!report.converged) clear_unless_finite(p, system.count());
     return report;
@@ -49,7 +53,15 @@ class WithMultigrid : public PressureSolver {
         raise_(options.raise) {}
 
   SolveReport solve(PressureSystem& system, const ScalarField& p) override {
-    const SolveReport first = first_way_.solve(system, p);
+    return or_recovered(first_way_.solve(system, p), system, p);
+  }
+
+  SolveReport solve_again(PressureSystem& system, const ScalarField& p) override {
+    return or_recovered(first_way_.solve_again(system, p), system, p);
+  }
+
+ private:
+  SolveReport or_recovered(const SolveReport& first, PressureSystem& system, const ScalarField& p) {
     if (first.converged || !std::isfinite(first.residual)) return first;
 
     system.raise_diagonal(raise_);
@@ -68,7 +80,6 @@ class WithMultigrid : public PressureSolver {
     return report;
   }
 
- private:
   Plain first_way_, last_resort_;
   real raise_;
 };

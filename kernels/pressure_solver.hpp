@@ -21,6 +21,8 @@ class PressureSolver {
   virtual ~PressureSolver() = default;
   /// Solves A p = b, with p as first guess; p is set to 0 where the surface is and is always finite.
   virtual SolveReport solve(PressureSystem& system, const ScalarField& p) = 0;
+  /// The same system as in the last solve() with another right side: what was made of the matrix is used once more.
+  virtual SolveReport solve_again(PressureSystem& system, const ScalarField& p) = 0;
 };
 
 /// With multigrid: conjugate gradients with it. When that fails (a closed cluster

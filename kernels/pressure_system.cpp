@@ -1,7 +1,5 @@
 #include "kernels/pressure_system.hpp"
 
-#include "kernels/blas.hpp"
-
 namespace greenwater {
 namespace {
 
@@ -153,9 +151,7 @@ accum PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, K, fixed_, diagonal_, p, Ap)
                        : flat               ? apply_recomputed_in<2>(*fluid_, K, fixed_, diagonal_, p, Ap)
                                             : apply_recomputed_in<3>(*fluid_, K, fixed_, diagonal_, p, Ap);
-  if (!added_ || !added_->any()) return energy;
-  added_->add_product(fixed(), p, Ap);
-  return blas::dot(p, Ap, count());
+  return added_ ? energy + added_->add_product(fixed(), p, Ap) : energy;
 }
 
 }  // namespace greenwater

@@ -17,7 +17,7 @@ struct Pusher {
   coord touching, scale;
   int body;
 
-  // Calls f(place, force per pressure) for every wall of the body on the path of every image of particle i.
+  // Calls f(face, place, force per pressure) for every wall of the body on the path of every image of particle i.
   template <class F>
   KOKKOS_INLINE_FUNCTION void for_each(int i, F f) const {
     const int number = near.images.number(i);
@@ -34,13 +34,12 @@ struct Pusher {
       if (!(r2 > touching)) continue;
       real weight = near.images.share(entry) * w(static_cast<real>(sqrt(r2)));
       if (near.kept) weight = static_cast<float>(weight);  // as the divergence had it
-      const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(),
-                             along(xi, coord(0.5), difference(xj, xi))};
+      const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(), xj, xi};
       auto pull = product(C, r);
-      image.for_each_wall_backwards([&](const Panel& wall) {
+      image.for_each_wall([&](const Panel& wall, const Vec<Dim, coord>& place) {
         const auto n = Sight<Dim>::as_vec(wall.normal);
         const coord along_n = dot(pull, n);
-        if (wall.body == body) f(image.foot(wall), along(Vec<Dim, coord>{}, scale * weight / r2 * along_n, n));
+        if (wall.body == body) f(wall.face, place, along(Vec<Dim, coord>{}, scale * weight / r2 * along_n, n));
         pull = along(pull, -2 * along_n, n);
       });
     }
@@ -69,7 +68,7 @@ std::array<double, 3> wall_reaction_in(const Fluid& fluid, const Survey& survey,
       KOKKOS_LAMBDA(const int i, accum& sum_x, accum& sum_y, accum& sum_z) {
         Vec<Dim, coord> force{};
         pusher.for_each(
-            i, [&](const Vec<Dim, coord>&, const Vec<Dim, coord>& push) { force = along(force, coord(1), push); });
+            i, [&](int, const Vec<Dim, coord>&, const Vec<Dim, coord>& push) { force = along(force, coord(1), push); });
         sum_x += p(i) * force[0];
         sum_y += p(i) * force[1];
         if (Dim == 3) sum_z += p(i) * force[Dim - 1];
@@ -87,7 +86,7 @@ std::vector<WallPush> wall_pushes_in(const Fluid& fluid, const Survey& survey, i
       "greenwater::wall_push_count", Range(0, count + 1), KOKKOS_LAMBDA(const int i, int& sum, const bool final) {
         if (final) first(i) = sum;
         if (i == count) return;
-        pusher.for_each(i, [&](const Vec<Dim, coord>&, const Vec<Dim, coord>&) { ++sum; });
+        pusher.for_each(i, [&](int, const Vec<Dim, coord>&, const Vec<Dim, coord>&) { ++sum; });
       });
   int number = 0;
   Kokkos::deep_copy(number, Kokkos::subview(first, count));
@@ -95,9 +94,10 @@ std::vector<WallPush> wall_pushes_in(const Fluid& fluid, const Survey& survey, i
   Kokkos::parallel_for(
       "greenwater::wall_pushes", Range(0, count), KOKKOS_LAMBDA(const int i) {
         int at = first(i);
-        pusher.for_each(i, [&](const Vec<Dim, coord>& place, const Vec<Dim, coord>& push) {
+        pusher.for_each(i, [&](int face, const Vec<Dim, coord>& place, const Vec<Dim, coord>& push) {
           WallPush& made = pushes(at++);
           made.particle = i;
+          made.face = face;
           for (int d = 0; d < Dim; ++d) {
             made.place[d] = place[d];
             made.push[d] = push[d];

@@ -17,7 +17,8 @@ std::array<double, 3> wall_reaction(const Fluid& fluid, const Survey& survey, in
 /// One entry of D^T V: the pressure of a particle pushes the wall at a place.
 struct WallPush {
   int particle = 0;
-  std::array<double, 3> place{};  // of the wall's plane [m]
+  int face = 0;                   // of the body that it pushes: in its plane, or in that of those that move alike
+  std::array<double, 3> place{};  // of the wall's plane, where the path to the image is thrown back [m]
   std::array<double, 3> push{};   // force per pressure [m], in 3-D [m^2]; along the wall's normal
 };
 

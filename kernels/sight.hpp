@@ -68,14 +68,14 @@ struct Sight {
       spared.add(joint[m.joint].panel[0]);
       spared.add(joint[m.joint].panel[1]);
     } else if (m.length == 1) {
-      share *= share_of_panel(m.panel, a, b, spared);
+      share *= share_of_panel(m.panel, a, b, k < panels, spared);
     }
-    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) share *= share_of_panel(m.also[e], a, b, spared);
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) share *= share_of_panel(m.also[e], a, b, false, spared);
     if (!(share > 0)) return 0;
     Point from_a, from_b;
-    if (!first_bounce(m, a, b, from_a) || !open(a, from_a, spared)) return 0;
+    if (!first_bounce(m, a, b, from_a, spared) || !open(a, from_a, spared)) return 0;
     if (k < panels) return open(from_a, b, spared) ? static_cast<real>(share) : real(0);
-    if (!first_bounce(mirror[m.reverse], b, a, from_b)) return 0;
+    if (!first_bounce(mirror[m.reverse], b, a, from_b, spared)) return 0;
     return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
   }
 
@@ -175,6 +175,7 @@ struct Sight {
       if (z < q.low - tolerance || z > q.high + tolerance) return false;
     }
     angle = atan2(dot(as_vec(q.across), r), dot(as_vec(q.along[0]), r));
+    if (q.angle > half_turn && angle < -half_turn / 2) angle += 2 * half_turn;
     return angle > 0 && angle < q.angle;
   }
 
@@ -191,19 +192,21 @@ struct Sight {
   }
 
   KOKKOS_INLINE_FUNCTION static coord share_of_sweep(const Joint& q, coord sweep) {
-    const coord left = half_turn - sweep;
+    const coord left = (q.angle > half_turn ? q.angle : half_turn) - sweep;
     if (left >= q.blend + 1e-9) return 1;
     if (left <= -q.blend - 1e-9) return 0;
     return q.blend > 1e-6 ? 0.5 + 0.5 * left / q.blend : 0.5;
   }
 
-  // The corners at the panel's ends, as far as a and b are both inside.
-  KOKKOS_INLINE_FUNCTION coord share_of_panel(int p, const Point& a, const Point& b, Spared& spared) const {
+  // The corners at the panel's ends, as far as a and b are both inside. In a corner of walls (not alone) one that bends
+  // goes on where its panels meet.
+  KOKKOS_INLINE_FUNCTION coord share_of_panel(int p, const Point& a, const Point& b, bool alone, Spared& spared) const {
     spared.add(p);
     coord share = 1;
     for (int k = panel[p].first_joint; k < panel[p].last_joint; ++k) {
       const Joint& q = joint[joint_of_panel[k]];
       coord at_a, at_b;
+      if (Dim == 2 && !alone && panel[q.panel[0]].bends && panel[q.panel[1]].bends && q.angle > blunt) continue;
       if (!inside(q, a, at_a) || !inside(q, b, at_b)) continue;
       share *= p == q.panel[0] ? share_of_sweep(q, at_a + at_b) : share_of_sweep(q, 2 * q.angle - at_a - at_b);
       spared.add(q.panel[0] == p ? q.panel[1] : q.panel[0]);
@@ -212,7 +215,8 @@ struct Sight {
   }
 
   // Where the path from a to the image of b comes to its first wall. False when it misses the wall's end.
-  KOKKOS_INLINE_FUNCTION bool first_bounce(const Mirror& m, const Point& a, const Point& b, Point& at) const {
+  KOKKOS_INLINE_FUNCTION bool first_bounce(const Mirror& m, const Point& a, const Point& b, Point& at,
+                                           Spared& spared) const {
     const auto line = difference(image_position(m, b), a);
     coord least = 2;
     int wall = -1;
@@ -229,7 +233,26 @@ struct Sight {
       return true;
     }
     at = greenwater::along(a, least, line);
-    return on_panel(panel[wall], at) || at_edge(wall, a, b, at);
+    if (on_panel(panel[wall], at) || at_edge(wall, a, b, at)) return true;
+    return m.length != 1 && goes_on(panel[wall], at, spared);
+  }
+
+  // A point of the plane of a wall that bends, beyond its end: is another panel of that wall there, nearly in the plane?
+  // It is then spared.
+  KOKKOS_INLINE_FUNCTION bool goes_on([[maybe_unused]] const Panel& w, [[maybe_unused]] const Point& at,
+                                      [[maybe_unused]] Spared& spared) const {
+    if constexpr (Dim == 2) {
+      constexpr coord nearly = 0.94;  // cosine of 20 degrees
+      for (int k = begin; w.bends && k < end && reach[k] < panels; ++k) {
+        const Panel& other = panel[reach[k]];
+        if (other.body != w.body || dot(as_vec(other.normal), as_vec(w.normal)) < nearly) continue;
+        const coord off = side(other, at);
+        if (fabs(off) > other.extent || !on_panel(other, greenwater::along(at, -off, as_vec(other.normal)))) continue;
+        spared.add(reach[k]);
+        return true;
+      }
+    }
+    return false;
   }
 
   KOKKOS_INLINE_FUNCTION void way_to(int p, const Point& a, const Point& line, coord& least, int& wall) const {
@@ -256,6 +279,7 @@ struct Sight {
   }
 
   static constexpr coord half_turn = 3.14159265358979323846;
+  static constexpr coord blunt = half_turn * 8 / 9;
 };
 
 /// What can be met within one radius of x; empty without walls. `far`: at any distance.

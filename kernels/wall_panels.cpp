@@ -21,21 +21,10 @@ struct Raw {
   bool moves = false;
 };
 
-// The field on the face that has the given values at its corners; along the normal it does not change.
-LinearField linear(const std::array<Vector, 3>& at, const std::array<Vector, 3>& value, const Vector& normal, int dim) {
-  Matrix from, rise;
-  from.col(0) = at[1] - at[0];
-  rise.col(0) = value[1] - value[0];
-  from.col(1) = dim == 2 ? Vector(0, 0, 1) : Vector(at[2] - at[0]);
-  rise.col(1) = dim == 2 ? Vector(0, 0, 0) : Vector(value[2] - value[0]);
-  from.col(2) = normal;
-  rise.col(2).setZero();
-  const Matrix gradient = rise * from.inverse();
-  LinearField field{};
-  put(field.value, value[0]);
-  for (int d = 0; d < 3; ++d)
-    for (int e = 0; e < 3; ++e) field.gradient[d][e] = gradient(d, e);
-  return field;
+LinearField linear(const Piece& piece, const std::array<Vector, 3>& at_corners, int dim) {
+  coord value[3][3];
+  for (int e = 0; e < 3; ++e) put(value[e], at_corners[e]);
+  return dim == 2 ? linear_field<2>(piece, value) : linear_field<3>(piece, value);
 }
 
 bool degenerate(const std::array<Vector, 3>& c, int dim, coord tolerance) {
@@ -57,6 +46,7 @@ std::vector<Raw> raw_pieces(const WallFaces& walls, coord tolerance) {
     if (degenerate(at, walls.dim, tolerance)) continue;
     Raw r;
     r.face = static_cast<int>(f);
+    r.moves = walls.bodies[walls.faces[f].body].bends;
     r.normal = vec(face_normal(corners_of(walls.faces[f]), walls.dim));
     for (int e = 0; e < walls.dim; ++e) {
       put(r.piece.corner[e], at[e]);
@@ -64,8 +54,8 @@ std::vector<Raw> raw_pieces(const WallFaces& walls, coord tolerance) {
       put(r.piece.inward[e], (walls.dim == 2 ? along : Vector(r.normal.cross(along))).normalized());
       r.moves = r.moves || velocity[e].squaredNorm() > 0 || acceleration[e].squaredNorm() > 0;
     }
-    r.velocity = linear(at, velocity, r.normal, walls.dim);
-    r.acceleration = linear(at, acceleration, r.normal, walls.dim);
+    r.velocity = linear(r.piece, velocity, walls.dim);
+    r.acceleration = linear(r.piece, acceleration, walls.dim);
     r.bounds = {at[0].cwiseMin(at[1]), at[0].cwiseMax(at[1])};
     if (walls.dim == 3) r.bounds.take_in({at[2], at[2]});
     raw.push_back(r);
@@ -119,6 +109,7 @@ bool one_panel(const WallFaces& walls, const Raw& a, const Raw& b, coord toleran
   for (int e = 0; e < walls.dim; ++e)
     if (std::fabs(a.normal.dot(corner(b.piece, e) - corner(a.piece, 0))) > tolerance) return false;
   const WallBody &body_a = walls.bodies[walls.faces[a.face].body], &body_b = walls.bodies[walls.faces[b.face].body];
+  if (body_a.bends || body_b.bends) return false;
   return body_a.no_slip == body_b.no_slip && moves_alike(a, b, walls.dim) && adjoin(a, b, walls.dim, tolerance);
 }
 
@@ -181,8 +172,10 @@ std::vector<Bounds> make_panels(const WallFaces& walls, const std::vector<Raw>& 
     put(panel.point, corner(lead.piece, 0));
     panel.first_piece = static_cast<int>(made.pieces.size());
     panel.body = walls.faces[lead.face].body;
+    panel.face = lead.face;
     panel.no_slip = walls.bodies[panel.body].no_slip;
     panel.moves = lead.moves;
+    panel.bends = walls.bodies[panel.body].bends;
     panel.velocity = lead.velocity;
     panel.acceleration = lead.acceleration;
     bounds.push_back(lead.bounds);

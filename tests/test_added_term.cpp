@@ -93,7 +93,8 @@ TEST_CASE("an added term is in the operator as it is given", "[unit][pressure][a
   const Eigen::MatrixXd without = dense(system)(active, active);
   const Term term = random_term(fluid, system, 3);
   AddedTerm added;
-  added.set(unknowns, term.D, term.C);
+  added.set_rows(unknowns, term.D);
+  added.set_answer(term.C);
   system.set_added(&added);
   const Eigen::MatrixXd with = dense(system);
   const Eigen::MatrixXd error = with(active, active) - without - term.dense(active, active);
@@ -113,7 +114,8 @@ TEST_CASE("with an added term the pressure is that of a dense solve", "[unit][pr
       PressureSystem system = assembled(fluid);
       const Term term = random_term(fluid, system, strength);
       AddedTerm added;
-      added.set(unknowns, term.D, term.C);
+      added.set_rows(unknowns, term.D);
+      added.set_answer(term.C);
       system.set_added(&added);
       const ScalarField p = zero_pressure(fluid);
       solve(system, p, way, real(1e-10));
@@ -138,7 +140,8 @@ TEST_CASE("iterations with an added term of forty unknowns", "[unit][pressure][a
     PressureSystem system = assembled(fluid);
     const Term term = random_term(fluid, system, strength);
     AddedTerm added;
-    added.set(unknowns, term.D, term.C);
+    added.set_rows(unknowns, term.D);
+    added.set_answer(term.C);
     system.set_added(&added);
     CHECK(solve(system, zero_pressure(fluid), Preconditioning::multigrid, real(1e-6)).iterations <= allowed);
   }
@@ -155,7 +158,8 @@ TEST_CASE("without an added term nothing of it is launched or held", "[unit][pre
   CHECK_FALSE(ears.allocated("added"));
 
   AddedTerm added;
-  added.set(1, {{free_particles(fluid)[0], 0, real(1)}}, {real(1)});
+  added.set_rows(1, {{free_particles(fluid)[0], 0, real(1)}});
+  added.set_answer({real(1)});
   system.set_added(&added);
   CHECK(ears.allocated("greenwater::added_value"));
   REQUIRE(solver->solve(system, p).converged);
