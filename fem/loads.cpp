@@ -74,6 +74,22 @@ void Loads::add_follower(std::vector<Facet> facets, Factor pressure) {
   followers_.push_back({std::move(facets), std::move(pressure)});
 }
 
+void Loads::add_acceleration(Acceleration acceleration) { accelerations_.push_back(std::move(acceleration)); }
+
+void Loads::prepare(const Solid& solid, double from, double to) {
+  if (accelerations_.empty()) return;
+  from_ = from;
+  to_ = to;
+  for (Eigen::VectorXd* f : {&at_from_, &at_to_}) {
+    f->setZero(solid.unknowns());
+    summand_.setZero(solid.unknowns());
+    for (const Acceleration& acceleration : accelerations_) {
+      acceleration(f == &at_from_ ? from : to, summand_);
+      *f += summand_.cwiseProduct(solid.mass());
+    }
+  }
+}
+
 void Loads::evaluate(const Solid& solid, double t, const Eigen::VectorXd& u, Eigen::VectorXd& f) const {
   if (constant_.size() == 0)
     f.setZero();
@@ -85,6 +101,10 @@ void Loads::evaluate(const Solid& solid, double t, const Eigen::VectorXd& u, Eig
     add_facets(
         solid, load.facets, u.data(), [p](const FacetPoint& point) -> Vec3 { return -p * point.area; }, f);
   }
+  if (accelerations_.empty()) return;
+  expect(at_to_.size() == f.size());
+  const double later = to_ > from_ ? (t - from_) / (to_ - from_) : 0;
+  f += (1 - later) * at_from_ + later * at_to_;
 }
 
 Eigen::VectorXd gravity_pattern(const Solid& solid, const std::array<double, 3>& acceleration) {

@@ -78,34 +78,45 @@ Eigen::VectorXd or_zero(const Eigen::VectorXd& x, Eigen::Index size) {
 double damping_of(double ratio, double frequency) { return 4 * std::numbers::pi * ratio * frequency; }
 
 March::March(const Solid& solid, Supports supports, Loads loads, const MarchOptions& options,
-             const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity)
-    : solid_(solid), supports_(std::move(supports)), loads_(std::move(loads)), options_(options) {
-  const double limit = critical_step(solid_, supports_), h = options_.step, alpha = options_.damping;
+             const Eigen::VectorXd& displacement, const Eigen::VectorXd& velocity, std::optional<Contact> contact)
+    : solid_(solid),
+      supports_(std::move(supports)),
+      loads_(std::move(loads)),
+      contact_(std::move(contact)),
+      options_(options) {
+  const double alone = critical_step(solid_, supports_), h = options_.step, alpha = options_.damping;
+  const double limit = contact_ ? Contact::critical_step(alone, contact_->stiffness()) : alone;
   require(h > 0 && h < limit, "the step of the structure is ", h, " s; it has to be above 0 and below ", limit,
           " s (2/omega_max), or coarsen the mesh");
   require(alpha >= 0, "the damping of the structure is ", alpha, " 1/s; it cannot be negative");
   const Eigen::Index n = solid_.unknowns();
   now_.time = options_.start;
   now_.u = or_zero(displacement, n);
-  now_.held = given_ = drag_ = inner_ = outer_ = reaction_ = next_held_ = Eigen::VectorXd::Zero(n);
+  now_.held = given_ = place_ = drag_ = inner_ = outer_ = reaction_ = next_held_ = Eigen::VectorXd::Zero(n);
   keep_ = Eigen::VectorXd::Constant(n, (1 - alpha * h / 2) / (1 + alpha * h / 2));
   push_ = h / (1 + alpha * h / 2) * solid_.mass().cwiseInverse();
   for (const int i : supports_.held) keep_[i] = push_[i] = 0;
+  if (contact_) now_.contact = contact_->begin(now_.time, alone);
   start(or_zero(velocity, n));
 }
 
-/// v(-1/2) = v(0) - h/2 a(0).
+/// v(-1/2) = v(0) - h/2 a(0); of moving supports 2 v(1/2) - v(3/2), as they may have been at rest before.
 void March::start(const Eigen::VectorXd& velocity) {
   const double h = options_.step;
-  for (const auto& motion : supports_.motions)
-    for (const int i : motion.unknowns) now_.u[i] = motion.displacement(now_.time);
+  for (const auto& motion : supports_.motions) motion.displacement(now_.time, now_.u);
   solid_.internal_force(now_.u, inner_);
+  if (contact_) contact_->push(now_.contact, {now_.time, 1, now_.u, now_.u}, inner_);
+  loads_.prepare(solid_, now_.time, now_.time);
   loads_.evaluate(solid_, now_.time, now_.u, outer_);
   const Eigen::VectorXd acceleration = (outer_ - inner_).cwiseQuotient(solid_.mass()) - options_.damping * velocity;
   now_.v = velocity - h / 2 * acceleration;
   for (const int i : supports_.held) now_.v[i] = 0;
-  for (const auto& motion : supports_.motions)
-    for (const int i : motion.unknowns) now_.v[i] = (now_.u[i] - motion.displacement(now_.time - h)) / h;
+  for (const auto& motion : supports_.motions) {
+    motion.displacement(now_.time + h, place_);
+    for (const int i : motion.unknowns) now_.v[i] = 3 * place_[i] - 2 * now_.u[i];
+    motion.displacement(now_.time + 2 * h, place_);
+    for (const int i : motion.unknowns) now_.v[i] = (now_.v[i] - place_[i]) / h;
+  }
   update_reaction();
 }
 
@@ -116,6 +127,9 @@ void March::advance(int steps) {
 
 void March::advance(int steps, const Eigen::VectorXd& held) {
   expect(held.size() == solid_.unknowns());
+  const double end = now_.time + steps * options_.step;
+  loads_.prepare(solid_, now_.time, end);
+  if (contact_ && steps > 0) contact_->prepare(now_.time, end);
   for (int step = 0; step < steps; ++step) {
     if (step < 2 || !loads_.steady()) {
       loads_.evaluate(solid_, now_.time, now_.u, outer_);
@@ -125,6 +139,7 @@ void March::advance(int steps, const Eigen::VectorXd& held) {
         outer_ += held;
     }
     solid_.internal_force(now_.u, inner_);
+    if (contact_) feel_walls();
     move_supports();
     kick();
   }
@@ -134,11 +149,19 @@ void March::advance(int steps, const Eigen::VectorXd& held) {
                          " s: its elements have turned inside out; refine them, lower the load, or shorten the step");
 }
 
+void March::feel_walls() {
+  const Contact::Instant now{now_.time, options_.step, now_.u, now_.v};
+  contact_->push(now_.contact, now, inner_);
+  const double power = contact_->power(now_.contact, now);
+  now_.supports += 0.5 * options_.step * (power + now_.contact.power);
+  now_.contact.power = power;
+}
+
 void March::move_supports() {
   for (const auto& motion : supports_.motions) {
-    const double place = motion.displacement(now_.time + options_.step);
+    motion.displacement(now_.time + options_.step, place_);
     for (const int i : motion.unknowns) {
-      const double before = now_.v[i], after = (place - now_.u[i]) / options_.step, mean = (before + after) / 2;
+      const double before = now_.v[i], after = (place_[i] - now_.u[i]) / options_.step, mean = (before + after) / 2;
       given_[i] = after;
       drag_[i] = solid_.mass()[i] * ((after - before) / options_.step + options_.damping * mean);
       now_.supports += options_.step * mean * (drag_[i] + inner_[i] - outer_[i]);
@@ -166,8 +189,12 @@ Energies March::energies() const {
   Eigen::VectorXd force(before.size());
   solid_.internal_force(before, force);
   const double half = 0.5 * options_.step * now_.v.dot(force);
+  const double strain = (solid_.linear() ? 0.5 * before.dot(force) : solid_.strain_energy(before)) + half;
+  const double then = now_.time - options_.step;
+  const double contact = contact_ ? contact_->energy(now_.contact, {then, options_.step, before, now_.v}) : 0;
   return {.kinetic = 0.5 * now_.v.cwiseAbs2().dot(solid_.mass()),
-          .strain = (solid_.linear() ? 0.5 * before.dot(force) : solid_.strain_energy(before)) + half,
+          .strain = strain,
+          .contact = contact,
           .lost = now_.lost,
           .loads = now_.loads,
           .supports = now_.supports};

@@ -66,17 +66,34 @@ Found nearest_in(const SolidMesh& mesh, int element, const std::array<double, 3>
   return found;
 }
 
+Found nearest(const SolidMesh& mesh, int element, const std::array<double, 3>& x) {
+  return mesh.dim == 2 ? nearest_in<2>(mesh, element, x) : nearest_in<3>(mesh, element, x);
+}
+
+/// Of squared distances.
+double round_off_of(const SolidMesh& mesh) {
+  const std::array<double, 3>&first = mesh.nodes[mesh.elements[0][0]], &opposite = mesh.nodes[mesh.elements[0][2]];
+  double sum = 0;
+  for (int d = 0; d < mesh.dim; ++d) sum += 1e-20 * (first[d] - opposite[d]) * (first[d] - opposite[d]);
+  return sum;
+}
+
 }  // namespace
+
+bool is_inside(const SolidMesh& mesh, const std::array<double, 3>& x) {
+  const double round_off = round_off_of(mesh);
+  for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e)
+    if (square_to_box(mesh, e, x) <= round_off && nearest(mesh, e, x).square <= round_off) return true;
+  return false;
+}
 
 MeshPlace place_in_mesh(const SolidMesh& mesh, const std::array<double, 3>& x) {
   expect(!mesh.elements.empty());
-  const std::array<double, 3>&first = mesh.nodes[mesh.elements[0][0]], &opposite = mesh.nodes[mesh.elements[0][2]];
-  double round_off = 0;  // of squared distances
-  for (int d = 0; d < mesh.dim; ++d) round_off += 1e-20 * (first[d] - opposite[d]) * (first[d] - opposite[d]);
+  const double round_off = round_off_of(mesh);
   Found best;
   for (int e = 0; e < static_cast<int>(mesh.elements.size()); ++e) {
     if (square_to_box(mesh, e, x) + round_off >= best.square) continue;
-    const Found found = mesh.dim == 2 ? nearest_in<2>(mesh, e, x) : nearest_in<3>(mesh, e, x);
+    const Found found = nearest(mesh, e, x);
     if (found.square + round_off < best.square) best = found;
   }
   return best.place;

@@ -18,4 +18,7 @@ struct MeshPlace {
 /// elements that share it, the first.
 MeshPlace place_in_mesh(const SolidMesh& mesh, const std::array<double, 3>& x);
 
+/// Whether x lies in an element, or on its outside.
+bool is_inside(const SolidMesh& mesh, const std::array<double, 3>& x);
+
 }  // namespace greenwater

@@ -18,13 +18,16 @@ class Newton {
         inner_(solid.unknowns()),
         outer_(solid.unknowns()) {
     solution_.u = Eigen::VectorXd::Zero(solid.unknowns());
+    loads_.prepare(solid, options.time, options.time);
   }
 
   /// Whether it got there.
   bool advance_to(double share) {
-    Eigen::VectorXd jump = Eigen::VectorXd::Zero(solid_.unknowns());
-    for (const auto& motion : supports_.motions)
-      for (const int i : motion.unknowns) jump[i] = share * motion.displacement(options_.time) - solution_.u[i];
+    Eigen::VectorXd jump = Eigen::VectorXd::Zero(solid_.unknowns()), moved = jump;
+    for (const auto& motion : supports_.motions) {
+      motion.displacement(options_.time, moved);
+      for (const int i : motion.unknowns) jump[i] = share * moved[i] - solution_.u[i];
+    }
     for (int iteration = 0; iteration <= options_.max_iterations; ++iteration) {
       const bool jumps = iteration == 0 && !jump.isZero(0);
       update_residual(share);
@@ -71,7 +74,7 @@ class Newton {
 
   const Solid& solid_;
   const Supports& supports_;
-  const Loads& loads_;
+  Loads loads_;
   const StaticOptions& options_;
   std::vector<int> free_;
   Eigen::VectorXd inner_, outer_;

@@ -21,9 +21,33 @@ void hold(Supports& supports, int dim, const std::vector<int>& nodes, int axis) 
 void move(Supports& supports, int dim, const std::vector<int>& nodes, int axis,
           std::function<double(double)> displacement) {
   hold(supports, dim, nodes, axis);
-  Supports::Motion motion{{}, std::move(displacement)};
-  for (const int node : nodes) motion.unknowns.push_back(dim * node + axis);
-  supports.motions.push_back(std::move(motion));
+  std::vector<int> unknowns;
+  for (const int node : nodes) unknowns.push_back(dim * node + axis);
+  auto write = [unknowns, displacement = std::move(displacement)](double t, Eigen::VectorXd& u) {
+    const double all = displacement(t);
+    for (const int i : unknowns) u[i] = all;
+  };
+  supports.motions.push_back({unknowns, std::move(write)});
+}
+
+void follow(Supports& supports, const SolidMesh& mesh, const std::vector<int>& nodes,
+            std::function<Eigen::Affine3d(double)> motion) {
+  const int dim = mesh.dim;
+  clamp(supports, dim, nodes);
+  std::vector<int> unknowns;
+  Eigen::Matrix3Xd rest(3, nodes.size());
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    rest.col(static_cast<Eigen::Index>(k)) = Eigen::Vector3d(mesh.nodes[nodes[k]].data());
+    for (int axis = 0; axis < dim; ++axis) unknowns.push_back(dim * nodes[k] + axis);
+  }
+  auto write = [dim, nodes, rest = std::move(rest), motion = std::move(motion)](double t, Eigen::VectorXd& u) {
+    const Eigen::Affine3d now = motion(t);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      const Eigen::Vector3d from = rest.col(static_cast<Eigen::Index>(k)), to = now * from;
+      for (int axis = 0; axis < dim; ++axis) u[dim * nodes[k] + axis] = to[axis] - from[axis];
+    }
+  };
+  supports.motions.push_back({std::move(unknowns), std::move(write)});
 }
 
 std::vector<int> free_unknowns(const Supports& supports, int count) {

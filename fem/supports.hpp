@@ -1,9 +1,12 @@
 #pragma once
 // Where a structure is held, and how what holds it moves.
 
+#include <Eigen/Geometry>
 #include <Eigen/Sparse>
 #include <functional>
 #include <vector>
+
+#include "core/solid_mesh.hpp"
 
 namespace greenwater {
 
@@ -11,7 +14,8 @@ namespace greenwater {
 struct Supports {
   struct Motion {
     std::vector<int> unknowns;
-    std::function<double(double)> displacement;  // [m] at a time [s]
+    /// Writes their displacements [m] at a time [s] among those of all unknowns.
+    std::function<void(double, Eigen::VectorXd&)> displacement;
   };
 
   std::vector<int> held;  // unknowns, ascending, each once, those of the motions too
@@ -27,6 +31,11 @@ void hold(Supports& supports, int dim, const std::vector<int>& nodes, int axis);
 /// Moves nodes along one axis.
 void move(Supports& supports, int dim, const std::vector<int>& nodes, int axis,
           std::function<double(double)> displacement);
+
+/// Moves nodes along all axes as parts of a rigid body, which `motion` takes from its place at rest to that at a time [s]:
+/// x(t) = motion(t) x(0) [m].
+void follow(Supports& supports, const SolidMesh& mesh, const std::vector<int>& nodes,
+            std::function<Eigen::Affine3d(double)> motion);
 
 /// The unknowns among `count` that are not held, ascending.
 std::vector<int> free_unknowns(const Supports& supports, int count);
