@@ -143,6 +143,22 @@ WetSurface::WetSurface(const SolidMesh& mesh, const std::vector<Facet>& facets, 
   mean_.setFromTriplets(entries.begin(), entries.end());
 }
 
+Eigen::VectorXd WetSurface::turn_of_corners(const Eigen::VectorXd& displacement) const {
+  expect(fluid_dim_ == 2);
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(corners()), faces = sum;
+  for (const auto& face : faces_) {
+    const int a = face[0], b = face[1];
+    const Eigen::Vector2d rest(rest_[b][0] - rest_[a][0], rest_[b][1] - rest_[a][1]);
+    const Eigen::Vector2d now = rest + displacement.segment<2>(2 * b) - displacement.segment<2>(2 * a);
+    const double turn = std::atan2(rest[0] * now[1] - rest[1] * now[0], rest.dot(now));
+    for (const int corner : {a, b}) {
+      sum[corner] += turn;
+      ++faces[corner];
+    }
+  }
+  return sum.cwiseQuotient(faces);
+}
+
 std::vector<WallFace> WetSurface::faces(int body) const {
   std::vector<WallFace> made;
   for (const auto& corners : faces_) {

@@ -20,9 +20,14 @@ class WetSurface {
   WetSurface(const SolidMesh& mesh, const std::vector<Facet>& facets, int fluid_dim, double depth = 1);
 
   int corners() const { return static_cast<int>(rest_.size()); }
+  int fluid_dim() const { return fluid_dim_; }
+  /// The normals of the faces times this point out of the solid.
+  static double outward(int fluid_dim) { return fluid_dim == 2 ? -1 : 1; }
   /// How deep a 2-D structure is: what turns forces per metre into forces [m]; 1 in 3-D.
   double depth() const { return depth_; }
 
+  /// Where the corners are at rest [m].
+  const std::vector<std::array<double, 3>>& rest() const { return rest_; }
   /// The faces at rest, of that body; corners of faces are in no order of their own.
   std::vector<WallFace> faces(int body) const;
   /// Which corner each corner of each face is.
@@ -34,6 +39,9 @@ class WetSurface {
   Eigen::VectorXd on_nodes(const Eigen::VectorXd& on_corners) const {
     return depth_ * (mean_.transpose() * on_corners);
   }
+  /// By which angle the surface of a 2-D fluid's structure has turned at each corner, anti-clockwise [rad], from the corners'
+  /// displacements: the mean of the faces that meet there.
+  Eigen::VectorXd turn_of_corners(const Eigen::VectorXd& displacement) const;
   /// The matrix of at_corners(): (fluid_dim corners x unknowns).
   const Eigen::SparseMatrix<double>& mean() const { return mean_; }
 

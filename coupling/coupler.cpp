@@ -1,0 +1,327 @@
+#include "coupling/coupler.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.hpp"
+#include "coupling/wall_rows.hpp"
+#include "fem/held_load_answer.hpp"
+#include "fem/modes.hpp"
+
+namespace greenwater {
+namespace {
+
+Reading reading_of(LoadReading load) {
+  return load == LoadReading::kernel_average ? Reading::average : Reading::neumann;
+}
+
+// div(u) per push: the pressure's source is -(rho / dt) of it, and a push is a force per pressure of a volume l0^d.
+double per_push(const Fluid& fluid, double dt) {
+  return fluid.rho / (dt * std::pow(fluid.spacing, fluid.particles.dim));
+}
+
+void fill(Exchange<CoordField>& field, const Eigen::VectorXd& values, int dim) {
+  for (Eigen::Index i = 0; i < values.size(); ++i) field.host(i / dim, i % dim) = values[i];
+  field.push();
+}
+
+}  // namespace
+
+Coupler::Coupled::Coupled(ElasticBody given, const WallFaces& walls, int first)
+    : body(std::move(given)), first_unknown(first) {
+  const int dim = walls.dim, corners = body.surface.corners();
+  velocity = Exchange<CoordField>("greenwater::corner_velocity", corners, dim);
+  acceleration = Exchange<CoordField>("greenwater::corner_acceleration", corners, dim);
+  placed = body.surface.at_corners(body.march->displacement());
+  base = speed = before = load = applied = Eigen::VectorXd::Zero(dim * corners);
+  const auto& faces = body.surface.corner_of_face();
+  Exchange<IndexField> corner_of_face("greenwater::corner_of_face", dim * faces.size());
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (int e = 0; e < dim; ++e) corner_of_face.host(dim * f + e) = faces[f][e];
+  corner_of_face.push();
+  motion = {walls.faces[body.first_face].body, body.first_face, corner_of_face.device, velocity.device,
+            acceleration.device};
+}
+
+Coupler::Coupler(std::vector<ElasticBody> bodies, const WallFaces& walls, const CouplingOptions& options)
+    : options_(options), relaxation_(options.first_relaxation) {
+  for (ElasticBody& body : bodies) {
+    bodies_.emplace_back(std::move(body), walls, unknowns_);
+    unknowns_ += walls.dim * bodies_.back().body.surface.corners();
+  }
+  if (!any()) return;
+  felt_ = Exchange<ScalarField>("greenwater::corner_load", unknowns_);
+  change_ = Exchange<ScalarField>("greenwater::corner_change", unknowns_);
+}
+
+int Coupler::substeps(const Coupled& one, double dt) const {
+  return static_cast<int>(std::lround(dt / one.body.options.step));
+}
+
+/// From the start of the step. The paper's load is that of the instant; one that is found later acts half in the first
+/// kick (fem/march.hpp).
+void Coupler::march(Coupled& one, const Eigen::VectorXd& load, double dt) {
+  Region region("structures");
+  const Eigen::VectorXd force = one.body.surface.on_nodes(load);
+  one.body.march->set_state(one.start);
+  if (options_.way == CouplingWay::staggered) one.body.march->set_held(force);
+  one.body.march->advance(substeps(one, dt), force);
+  one.speed = (one.body.surface.at_corners(one.body.march->displacement()) - one.placed) / dt;
+}
+
+Eigen::VectorXd Coupler::acceleration_of(const Coupled& one, double dt) const {
+  if (!options_.walls_accelerate) return Eigen::VectorXd::Zero(one.speed.size());
+  return (one.speed - one.before) / dt;
+}
+
+void Coupler::give_speeds(Fluid& fluid, Coupled& one, double dt) {
+  const int dim = fluid.faces.dim;
+  fill(one.velocity, one.speed, dim);
+  fill(one.acceleration, acceleration_of(one, dt), dim);
+  set_wall_motion(fluid.walls, dim, one.motion);
+}
+
+void Coupler::foresee(Fluid& fluid, double dt) {
+  if (!any()) return;
+  passes_ = 1;
+  disagreed_ = false;
+  last_residual_.resize(0);
+  renew_answers(dt);
+  for (Coupled& one : bodies_) {
+    one.start = one.body.march->state();
+    one.applied = one.load;
+    march(one, one.load, dt);
+    one.foreseen = one.body.march->state();
+    // What it would be without load, as the answer tells it: what the answer is wrong by is then that of the load's change.
+    if (options_.way == CouplingWay::joint) one.speed -= one.answer * one.load;
+    one.base = one.speed;
+    give_speeds(fluid, one, dt);
+  }
+}
+
+void Coupler::join(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt) {
+  if (!any()) return;
+  Region region("coupling");
+  std::vector<AddedEntry> rows;
+  for (const Coupled& one : bodies_)
+    add_wall_rows(wall_pushes(fluid, survey, one.motion.body), fluid.faces, one.body.surface, one.body.first_face,
+                  one.first_unknown, rows);
+  term_.set_rows(unknowns_, rows);
+  if (options_.way != CouplingWay::joint) return;
+  hand_over_answers(fluid, dt);
+  system.set_added(&term_);
+}
+
+/// The answers of the substeps themselves, about the shape at rest. Of steps that differ little they differ little, and
+/// what they are wrong by is corrected: so they are made anew only now and then. In a 2-D fluid they turn with the surface.
+void Coupler::renew_answers(double dt) {
+  constexpr double much = 1.25, far = 2e-3;  // of steps; [rad]
+  if (options_.way != CouplingWay::joint) return;
+  const bool anew = answer_dt_ == 0 || dt > much * answer_dt_ || answer_dt_ > much * dt;
+  if (anew) answer_dt_ = dt;
+  for (Coupled& one : bodies_) {
+    const ElasticBody& body = one.body;
+    if (anew) {
+      const Eigen::SparseMatrix<double> patterns = body.surface.mean().transpose();
+      one.answer_at_rest = body.surface.depth() / dt *
+                           held_load_answer(*body.solid, *body.supports, patterns, body.options, substeps(one, dt));
+    }
+    const bool turns = body.surface.fluid_dim() == 2 && !body.solid->linear();
+    const Eigen::VectorXd turn =
+        turns ? body.surface.turn_of_corners(one.placed) : Eigen::VectorXd::Zero(body.surface.corners());
+    if (!anew && (turn - one.turn).lpNorm<Eigen::Infinity>() < far) continue;
+    one.turn = turn;
+    one.answer = one.answer_at_rest;
+    for (Eigen::Index c = 0; turns && c < turn.size(); ++c) {
+      const Eigen::Matrix2d by = Eigen::Rotation2Dd(turn[c]).toRotationMatrix();
+      one.answer.middleRows<2>(2 * c) = (by * one.answer.middleRows<2>(2 * c)).eval();
+      one.answer.middleCols<2>(2 * c) = (one.answer.middleCols<2>(2 * c) * by.transpose()).eval();
+    }
+    answers_changed_ = true;
+  }
+}
+
+void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
+  if (!answers_changed_ && dt == handed_dt_) return;
+  answers_changed_ = false;
+  handed_dt_ = dt;
+  std::vector<real> C(static_cast<std::size_t>(unknowns_) * unknowns_, 0);
+  for (const Coupled& one : bodies_)
+    for (Eigen::Index row = 0; row < one.answer.rows(); ++row)
+      for (Eigen::Index column = 0; column < one.answer.cols(); ++column)
+        C[(one.first_unknown + row) * unknowns_ + one.first_unknown + column] =
+            static_cast<real>(per_push(fluid, dt) * one.answer(row, column));
+  term_.set_answer(C);
+}
+
+void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
+  Region region("coupling");
+  if (options_.load == LoadReading::transpose) {
+    expect(system != nullptr);
+    term_.feel(fluid.particles.pressure, felt_.device);
+    felt_.pull();
+    for (Coupled& one : bodies_)
+      for (Eigen::Index i = 0; i < one.load.size(); ++i) one.load[i] = felt_.host(one.first_unknown + i);
+    return;
+  }
+  for (Coupled& one : bodies_)
+    one.load =
+        greenwater::read_loads(sampler_, fluid, one.body.surface, one.body.first_face, reading_of(options_.load));
+}
+
+/// The speeds of the walls as the solve had them.
+Eigen::VectorXd Coupler::seen(const Coupled& one) const {
+  if (options_.way != CouplingWay::joint) return one.base;
+  return one.base + one.answer * one.load;
+}
+
+Eigen::VectorXd Coupler::residual() const {
+  Eigen::VectorXd all(unknowns_);
+  for (const Coupled& one : bodies_) all.segment(one.first_unknown, one.speed.size()) = one.speed - seen(one);
+  return all;
+}
+
+bool Coupler::agreed(const Eigen::VectorXd& residual, const Fluid& fluid, double dt) const {
+  constexpr double at_rest = 1e-9;  // x spacing / dt
+  double fastest = 0;
+  for (const Coupled& one : bodies_) fastest = std::max(fastest, one.speed.lpNorm<Eigen::Infinity>());
+  return residual.lpNorm<Eigen::Infinity>() <= options_.tolerance * fastest + at_rest * fluid.spacing / dt;
+}
+
+/// Aitken's relaxation: omega_k+1 = -omega_k r_k . (r_k+1 - r_k) / |r_k+1 - r_k|^2, kept from step to step.
+Eigen::VectorXd Coupler::relaxed(const Eigen::VectorXd& residual) {
+  constexpr double least = 0.01, most = 1;
+  if (last_residual_.size() > 0) {
+    const Eigen::VectorXd change = residual - last_residual_;
+    const double size2 = change.squaredNorm();
+    if (size2 > 0) relaxation_ *= -last_residual_.dot(change) / size2;
+    relaxation_ = std::clamp(relaxation_, least, most);
+  }
+  last_residual_ = residual;
+  return relaxation_ * residual;
+}
+
+void Coupler::change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt) {
+  for (Eigen::Index i = 0; i < by.size(); ++i) change_.host(i) = static_cast<real>(by[i]);
+  change_.push();
+  term_.add_source(system.fixed(), static_cast<real>(-per_push(fluid, dt)), change_.device, system.rhs());
+}
+
+/// A structure that the fluid has not touched and does not touch has gone its way already.
+void Coupler::march_under_loads(double dt) {
+  ++passes_;
+  for (Coupled& one : bodies_) {
+    const bool alone = one.load.isZero(0) && one.applied.isZero(0);
+    one.applied = one.load;
+    if (alone)
+      one.body.march->set_state(one.foreseen);
+    else
+      march(one, one.load, dt);
+  }
+}
+
+bool Coupler::answer(Fluid& fluid, PressureSystem& system, double dt) {
+  if (!any()) return false;
+  read_loads(fluid, &system);
+  if (options_.way == CouplingWay::staggered) return false;
+  march_under_loads(dt);
+  const Eigen::VectorXd r = residual();
+  const bool good = agreed(r, fluid, dt);
+  if (good || passes_ > options_.most_passes) {
+    disagreed_ = !good;
+    for (Coupled& one : bodies_) {
+      one.base = seen(one);
+      give_speeds(fluid, one, dt);
+    }
+    return false;
+  }
+  const Eigen::VectorXd by = options_.way == CouplingWay::joint ? r : relaxed(r);
+  for (Coupled& one : bodies_) one.base += by.segment(one.first_unknown, one.base.size());
+  change_source(fluid, system, by, dt);
+  return true;
+}
+
+bool Coupler::answer_of_whole_step(Fluid& fluid, double dt) {
+  if (!any()) return false;
+  read_loads(fluid, nullptr);
+  if (options_.way == CouplingWay::staggered) return false;
+  march_under_loads(dt);
+  const Eigen::VectorXd r = residual();
+  disagreed_ = !agreed(r, fluid, dt);
+  const bool again = disagreed_ && passes_ <= options_.most_passes;
+  const Eigen::VectorXd by = again ? relaxed(r) : Eigen::VectorXd::Zero(unknowns_);
+  for (Coupled& one : bodies_) one.speed = one.base += by.segment(one.first_unknown, one.base.size());
+  return again;
+}
+
+void Coupler::place_walls(Fluid& fluid, double dt) {
+  if (!any()) return;
+  Region region("moving_walls");
+  const int dim = fluid.faces.dim;
+  for (const Coupled& one : bodies_) {
+    const auto& corners = one.body.surface.corner_of_face();
+    const Eigen::VectorXd acceleration = acceleration_of(one, dt);
+    for (std::size_t f = 0; f < corners.size(); ++f)
+      for (int e = 0; e < dim; ++e)
+        for (int d = 0; d < dim; ++d) {
+          const int i = dim * corners[f][e] + d;
+          WallPoint& point = fluid.faces.faces[one.body.first_face + f].corner[e];
+          point.position[d] = one.body.surface.rest()[corners[f][e]][d] + one.placed[i] + dt * one.speed[i];
+          point.velocity[d] = one.speed[i];
+          point.acceleration[d] = acceleration[i];
+        }
+  }
+  make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), fluid.spacing);
+}
+
+void Coupler::finish(const Fluid& fluid, double dt) {
+  constexpr double felt = 1e-4;  // x spacing / dt: slower walls may do as they like
+  for (Coupled& one : bodies_) {
+    one.ledger.add(one.load, one.applied, one.base, one.speed, one.body.surface.fluid_dim(), one.body.surface.depth(),
+                   dt, felt * fluid.spacing / dt);
+    one.placed += dt * one.speed;
+    one.before = one.speed;
+  }
+}
+
+void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver) {
+  constexpr double strong = 1e9;  // m/s^2, so that no absolute tolerance of the solver is met
+  weighs_ = false;
+  Region region("added_mass");
+  const std::size_t room = fluid.particles.id.extent(0);
+  ScalarField b("greenwater::added_mass_source", room), p("greenwater::added_mass_pressure", room);
+  for (Coupled& one : bodies_) {
+    if (one.mode.size() == 0)
+      one.mode = one.body.surface.at_corners(lowest_modes(*one.body.solid, *one.body.supports, 1).shapes.col(0));
+    Eigen::VectorXd all = Eigen::VectorXd::Zero(unknowns_);
+    all.segment(one.first_unknown, one.mode.size()) = one.mode;
+    for (Eigen::Index i = 0; i < all.size(); ++i) change_.host(i) = static_cast<real>(strong * all[i]);
+    change_.push();
+    Kokkos::deep_copy(b, real(0));
+    Kokkos::deep_copy(p, real(0));
+    term_.add_source(system.fixed(), static_cast<real>(-per_push(fluid, 1)), change_.device, b);
+    PressureSystem still({});
+    still.assemble(fluid, b, system.diagonal(), system.fixed());
+    solver.solve(still, p);
+    term_.feel(p, felt_.device);
+    felt_.pull();
+    double mass = 0;
+    for (Eigen::Index i = 0; i < one.mode.size(); ++i) mass -= one.mode[i] * felt_.host(one.first_unknown + i);
+    one.added_mass = one.body.surface.depth() * mass / strong;
+  }
+}
+
+std::string Coupler::alarm() const {
+  constexpr int many = 4;
+  if (options_.way != CouplingWay::staggered) return {};
+  for (const Coupled& one : bodies_) {
+    if (one.ledger.alternations() < many) continue;
+    return text_of("the walls' accelerations have changed sign in ", one.ledger.alternations(),
+                   " steps in a row, each time ", one.ledger.growth(),
+                   " times as large: the added mass of the fluid is that many times the structure's, and a staggered "
+                   "march cannot bear more than 1 -> coupling.scheme = \"default\" or \"aitken\"");
+  }
+  return {};
+}
+
+}  // namespace greenwater

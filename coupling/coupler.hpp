@@ -1,0 +1,135 @@
+#pragma once
+// Fluid and structures, step by step. The scheme of the fluid asks in this order:
+//
+//   foresee()      structures march, walls get their speeds for the step
+//   join()         the pressure solve learns what walls and structures do to it
+//   answer()       after a solve: loads go to the structures, which march; true when the fluid is to solve once more
+//   place_walls()  walls go to where the structures are
+//
+// Over a step from t to t + dt a load f is held, and a structure whose displacement was u0 comes to u1. The fluid always
+// has its mean velocity V = (u1 - u0) / dt, never that of the end: only with the mean is the answer to a load positive.
+// Without structures all of this does nothing.
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "coupling/coupling_options.hpp"
+#include "coupling/exchange.hpp"
+#include "coupling/interface_ledger.hpp"
+#include "coupling/surface_load.hpp"
+#include "fem/march.hpp"
+#include "kernels/pressure_solver.hpp"
+#include "kernels/survey.hpp"
+
+namespace greenwater {
+
+/// A structure as the coupling sees it. What it points to must outlive it.
+struct ElasticBody {
+  const Solid* solid = nullptr;
+  const Supports* supports = nullptr;
+  March* march = nullptr;
+  MarchOptions options;  // of the march
+  WetSurface surface;
+  int first_face = 0;  // of the surface's faces among those of the fluid
+};
+
+class Coupler {
+ public:
+  Coupler() = default;
+  Coupler(std::vector<ElasticBody> bodies, const WallFaces& walls, const CouplingOptions& options);
+
+  bool any() const { return !bodies_.empty(); }
+  /// Whether a step may have to be made again from its start, walls and all (classic scheme).
+  bool repeats_steps() const { return any() && options_.way == CouplingWay::aitken; }
+
+  /// From t to t + dt, which the fluid has not begun: structures march under the load at t. joint, aitken: as a first guess;
+  /// of the joint march the part that the load makes of it is taken off again, as it is part of the solve.
+  void foresee(Fluid& fluid, double dt);
+
+  /// After the rows and the survey of this step: rows of the walls, and with `joint` D C D^T into the operator.
+  void join(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt);
+
+  /// After a solve of the default scheme. Corrects the right side where it says so.
+  bool answer(Fluid& fluid, PressureSystem& system, double dt);
+  /// After a solve of the classic scheme, whose walls stand where they will be: true when the step is to be made again
+  /// from its start, with walls that place_walls() moves anew.
+  bool answer_of_whole_step(Fluid& fluid, double dt);
+
+  /// Walls go to where they are at t + dt, with the velocity with which the fluid has seen them.
+  void place_walls(Fluid& fluid, double dt);
+  /// The step is over.
+  void finish(const Fluid& fluid, double dt);
+
+  /// Asks for the added mass in the step that comes: one solve more for each structure.
+  void ask_for_added_mass() { weighs_ = any(); }
+  bool weighs() const { return weighs_; }
+  /// After answer(): what it is, of the water as it stands. b = -rho D a for accelerations a of the walls as in the first
+  /// dry mode gives the pressure against them, and that the added mass of the mode.
+  void weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver);
+
+  const ElasticBody& body(std::size_t k) const { return bodies_[k].body; }
+  /// Forces of the fluid on the corners of a structure [N/m], in 3-D [N].
+  const Eigen::VectorXd& loads(std::size_t k) const { return bodies_[k].load; }
+  const InterfaceLedger& ledger(std::size_t k) const { return bodies_[k].ledger; }
+  /// Added mass over that of the structure, both of its first dry mode, when it was last asked for; not a number before.
+  double added_mass_ratio(std::size_t k) const { return bodies_[k].added_mass; }
+  /// Marches of the structures in the last step, one of all of them counted as one.
+  int passes() const { return passes_; }
+  /// Whether the last step ended without agreement.
+  bool disagreed() const { return disagreed_; }
+  /// A notice of walls whose accelerations alternate and grow, or nothing.
+  std::string alarm() const;
+
+ private:
+  struct Coupled {
+    Coupled(ElasticBody given, const WallFaces& walls, int first);
+
+    ElasticBody body;
+    int first_unknown = 0;
+    Eigen::VectorXd placed;                  // displacement of the corners where the walls stand [m]
+    Eigen::VectorXd base;                    // speeds in the right side of the solve [m/s]
+    Eigen::VectorXd speed;                   // of the walls in this step [m/s]
+    Eigen::VectorXd before;                  // in the last one
+    Eigen::VectorXd load;                    // on the corners
+    Eigen::VectorXd applied;                 // that under which the structure has gone through this step
+    Eigen::MatrixXd answer, answer_at_rest;  // C: speeds per load
+    Eigen::VectorXd turn;                    // of the corners, with which the answer was turned [rad]
+    Eigen::VectorXd mode;  // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
+    double added_mass = std::numeric_limits<double>::quiet_NaN();  // over the structure's
+    March::State start;                                            // of this step
+    March::State foreseen;                                         // at its end, under the load of the last one
+    InterfaceLedger ledger;
+    CornerMotion motion;
+    Exchange<CoordField> velocity, acceleration;
+  };
+
+  void march_under_loads(double dt);
+  void march(Coupled& one, const Eigen::VectorXd& load, double dt);
+  Eigen::VectorXd acceleration_of(const Coupled& one, double dt) const;
+  void give_speeds(Fluid& fluid, Coupled& one, double dt);
+  void read_loads(const Fluid& fluid, const PressureSystem* system);
+  void renew_answers(double dt);
+  void hand_over_answers(const Fluid& fluid, double dt);
+  void change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt);
+  Eigen::VectorXd residual() const;
+  Eigen::VectorXd relaxed(const Eigen::VectorXd& residual);
+  bool agreed(const Eigen::VectorXd& residual, const Fluid& fluid, double dt) const;
+  Eigen::VectorXd seen(const Coupled& one) const;
+  int substeps(const Coupled& one, double dt) const;
+
+  std::vector<Coupled> bodies_;
+  CouplingOptions options_;
+  int unknowns_ = 0, passes_ = 0;
+  bool disagreed_ = false;
+  AddedTerm term_;
+  double answer_dt_ = 0, handed_dt_ = 0;  // steps of the answers, and with which the term has them [s]
+  bool answers_changed_ = false;
+  Exchange<ScalarField> felt_, change_;
+  PointSampler sampler_;
+  Eigen::VectorXd last_residual_;
+  double relaxation_ = 0;
+  bool weighs_ = false;
+};
+
+}  // namespace greenwater
