@@ -115,6 +115,7 @@ Point pressure_point(const Scene& scene, const WallFaces& walls, const ProbeCase
 
 std::unique_ptr<Motion> motion_of(const Scene& scene, const WallFaces& walls, const ProbeCase& probe) {
   for (const WallFace& face : walls.faces) {
+    if (walls.bodies[face.body].bends) continue;
     const auto& motion = geometry_named(scene, walls.bodies[face.body].name).motion;
     if (motion && is_on(face, probe.point, scene)) return std::make_unique<Motion>(*motion);
   }
@@ -201,6 +202,7 @@ std::unique_ptr<Scheme> build_default(const Scene& scene, const Fluid& fluid) {
   options.smoothing.inside = static_cast<real>(parts.smoothing);
   options.smoothing.at_surface = static_cast<real>(parts.surface_smoothing);
   options.separation = static_cast<real>(parts.separation);
+  options.diagonal_factor = static_cast<real>(parts.diagonal_factor);
   return make_default(options);
 }
 

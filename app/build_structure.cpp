@@ -1,6 +1,12 @@
 #include "app/build_structure.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "app/build_walls.hpp"
 #include "app/formula.hpp"
+#include "app/motion.hpp"
+#include "app/scene_shape.hpp"
 
 namespace greenwater {
 namespace {
@@ -48,6 +54,31 @@ double area_of(const Solid& solid, const std::vector<Facet>& facets) {
   return area;
 }
 
+/// The motion of a geometry, also of one that stands.
+std::function<Eigen::Affine3d(double)> motion_of(const Scene& scene, const std::string& name) {
+  const GeometryCase& geometry = geometry_named(scene, name);
+  if (!geometry.motion) return [](double) { return Eigen::Affine3d::Identity(); };
+  const auto motion = std::make_shared<Motion>(*geometry.motion);
+  const Eigen::Vector3d about(geometry.motion->about.data()), axis(geometry.motion->axis.data());
+  return [motion, about, unit = axis.normalized().eval()](double t) {
+    const Point moved = motion->displacement(t);
+    return Eigen::Affine3d(Eigen::Translation3d(about + Eigen::Vector3d(moved.data())) *
+                           Eigen::AngleAxisd(motion->angle(t), unit) * Eigen::Translation3d(-about));
+  };
+}
+
+/// Keeps a reference to the solid.
+Loads::Acceleration acceleration_of(const Solid& solid, const StructureLoadCase& load) {
+  const auto compiled = std::make_shared<std::array<Formula, 3>>(compile(load.vector.text, load.vector.place));
+  return [&solid, compiled, factor = of_time(load.factor)](double t, Eigen::VectorXd& acceleration) {
+    const double times = factor(t);
+    for (Eigen::Index i = 0; i < acceleration.size(); ++i) {
+      const Point& x = solid.mesh().nodes[i / solid.dim()];
+      acceleration[i] = times * (*compiled)[i % solid.dim()](x[0], x[1], x[2], t);
+    }
+  };
+}
+
 /// The force of a load at factor 1; that of a part without facets is shared evenly by its nodes.
 Eigen::VectorXd pattern_of(const Solid& solid, const StructureLoadCase& load) {
   const MeshPart& part = *find_part(solid.mesh(), load.part);
@@ -86,10 +117,11 @@ std::unique_ptr<Solid> build_solid(const StructureCase& given) {
   return built_at(given.place, [&] { return std::make_unique<Solid>(given.mesh, material, options); });
 }
 
-Supports build_supports(const StructureCase& given) {
+Supports build_supports(const Scene& scene, const StructureCase& given) {
   Supports supports;
   for (const SupportCase& support : given.supports) {
     const std::vector<int> nodes = nodes_of(given, support);
+    if (!support.with.empty()) follow(supports, given.mesh, nodes, motion_of(scene, support.with));
     for (const int axis : support.axes) {
       if (support.displacement)
         move(supports, given.mesh.dim, nodes, axis, of_time(*support.displacement));
@@ -106,7 +138,9 @@ Loads build_loads(const Scene& scene, const Solid& solid, const StructureCase& g
   for (const StructureLoadCase& load : given.loads) {
     const auto factor = of_time(load.factor);
     const bool steady = Formula(load.factor.text, load.factor.place, Variables::time).constant();
-    if (load.follows) {
+    if (load.kind == "acceleration") {
+      loads.add_acceleration(acceleration_of(solid, load));
+    } else if (load.follows) {
       const double pressure = Formula(load.pressure.text, load.pressure.place)(0, 0, 0, 0);
       const auto follower = [factor, pressure](double t) { return pressure * factor(t); };
       loads.add_follower(find_part(given.mesh, load.part)->facets, follower);
@@ -117,6 +151,23 @@ Loads build_loads(const Scene& scene, const Solid& solid, const StructureCase& g
     }
   }
   return loads;
+}
+
+std::optional<Contact> build_contact(const Scene& scene, const Solid& solid, const StructureCase& given) {
+  if (!given.contact) return {};
+  const auto walls = std::make_shared<WallFaces>(build_walls(scene));
+  const std::vector<std::string>& names = given.contact->walls;
+  std::vector<std::size_t> touched;
+  for (std::size_t f = 0; f < walls->faces.size(); ++f)
+    if (std::count(names.begin(), names.end(), walls->bodies[walls->faces[f].body].name) > 0) touched.push_back(f);
+  const auto place = [walls, touched, motion = build_motion(scene)](double t, std::vector<FaceCorners>& corners) {
+    if (motion) motion(*walls, t);
+    corners.clear();
+    for (const std::size_t f : touched) corners.push_back(corners_of(walls->faces[f]));
+  };
+  return built_at(given.contact->place, [&] {
+    return Contact(solid, {scene.dimension, place}, given.contact->stiffness);
+  });
 }
 
 Eigen::VectorXd at_nodes(const Solid& solid, const VectorFormula& formulas) {

@@ -153,7 +153,7 @@ WallMotion build_motion(const Scene& scene) {
   }
   if (!any) return {};
   return [moving](WallFaces& faces, double t) {
-    for (std::size_t f = 0; f < faces.faces.size(); ++f) {
+    for (std::size_t f = 0; f < moving->start.faces.size(); ++f) {  // those of structures come after them
       const WallFace& start = moving->start.faces[f];
       const auto& motion = moving->of_body[start.body];
       if (!motion) continue;

@@ -9,6 +9,7 @@
 #include "app/plate_frame.hpp"
 #include "app/scene_shape.hpp"
 #include "core/interior.hpp"
+#include "fem/mesh_place.hpp"
 
 namespace greenwater {
 namespace {
@@ -85,9 +86,11 @@ std::vector<Point> fill_inside(const Scene& scene) {
   return kept;
 }
 
-bool in_a_plate(const Scene& scene, const Point& x) {
+bool in_a_solid(const Scene& scene, const Point& x) {
   return std::any_of(scene.plates.begin(), scene.plates.end(),
-                     [&](const PlateCase& plate) { return inside_plate(plate, x, scene.dimension); });
+                     [&](const PlateCase& plate) { return inside_plate(plate, x, scene.dimension); }) ||
+         std::any_of(scene.structures.begin(), scene.structures.end(),
+                     [&](const StructureCase& structure) { return is_inside(structure.mesh, x); });
 }
 
 // From -1 to 1, the same for a number on every machine (Steele, Lea and Flood's splitmix64).
@@ -99,7 +102,7 @@ double random_of(std::uint64_t number) {
   return static_cast<double>(number >> 11) * 0x1p-52 - 1;  // 53 bits: exact
 }
 
-// Each by its own number; who would end in a plate, or beside a ball, stays.
+// Each by its own number; who would end in a solid, or beside a ball, stays.
 void shake(const Scene& scene, std::vector<Point>& points) {
   const double most = scene.fluid.jitter * scene.mps.spacing;
   if (most == 0) return;
@@ -107,7 +110,7 @@ void shake(const Scene& scene, std::vector<Point>& points) {
     Point x = points[i];
     for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d) x[d] += most * random_of(3 * i + d);
     const bool leaves = scene.fluid.ball && !inside_ball(*scene.fluid.ball, x);
-    if (!leaves && !in_a_plate(scene, x)) points[i] = x;
+    if (!leaves && !in_a_solid(scene, x)) points[i] = x;
   }
 }
 
@@ -123,7 +126,7 @@ std::vector<Point> fill(const Scene& scene) {
   std::vector<Point> points = needs_spreading(scene) ? fill_inside(scene)
                               : fluid.ball           ? lattice_in_ball(*fluid.ball, scene.mps.spacing, scene.dimension)
                                                      : lattice(fluid, fluid.min, scene.mps.spacing, scene.dimension);
-  points.erase(std::remove_if(points.begin(), points.end(), [&](const Point& x) { return in_a_plate(scene, x); }),
+  points.erase(std::remove_if(points.begin(), points.end(), [&](const Point& x) { return in_a_solid(scene, x); }),
                points.end());
   require_at(scene.fluid.place, !points.empty(),
              "the fluid's region holds no particle: enlarge it or take a smaller mps.spacing");

@@ -55,10 +55,14 @@ std::string effects_text(const Effects& effects) {
 
 FluidSimulation::FluidSimulation(const Scene& scene)
     : scene_(scene),
-      fluid_(build_fluid(scene, build_walls(scene))),
+      structures_(build_structures(scene)),
+      walls_at_start_(build_walls(scene)),
+      coupler_(
+          build_coupler(scene, structures_, add_wet_surfaces(scene, structures_, walls_at_start_), walls_at_start_)),
+      fluid_(build_fluid(scene, walls_at_start_)),
       effects_(build_effects(scene)),
       scheme_(build_scheme(scene, fluid_)),
-      step_length_(scene),
+      step_length_(scene, structures_.empty() ? 0 : structures_.front().march_options().step),
       dt_(step_length_.next(fluid_, std::numeric_limits<double>::infinity())) {
   for (const ProbeCase& probe : scene_.probes) {
     const bool of_pressure = probe.kind == "wall_pressure";
@@ -75,7 +79,8 @@ FluidSimulation::FluidSimulation(const Scene& scene)
 void FluidSimulation::step() {
   Region region("step");
   if (steps_ > 0) dt_ = step_length_.next(fluid_, dt_);
-  last_ = scheme_->step(fluid_, effects_, static_cast<real>(dt()));
+  if (coupler_.any() && (steps_ + 1) % scene_.output.history_every_steps == 0) coupler_.ask_for_added_mass();
+  last_ = scheme_->step(fluid_, effects_, coupler_, static_cast<real>(dt()));
   ++steps_;
   fluid_.time = time_after();
   look_after(last_);
@@ -84,8 +89,8 @@ void FluidSimulation::step() {
 /// Multiples where all steps are one, sums where they adapt; the end is met exactly.
 double FluidSimulation::time_after() const {
   if (!scene_.mps.adaptive) return static_cast<accum>(steps_) * dt();
-  const double left = scene_.end - time();
-  return left > 0 && dt() >= left ? scene_.end : time() + dt();
+  const double left = scene_.end - time(), slack = structures_.empty() ? 0 : structures_.front().march_options().step;
+  return left > 0 && dt() >= left - slack ? scene_.end : time() + dt();
 }
 
 void FluidSimulation::look_after(const StepReport& report) {
@@ -101,6 +106,7 @@ void FluidSimulation::look_after(const StepReport& report) {
                  static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
                  scene_.dimension == 2 ? " kg/m" : " kg"),
          report.departed.outside);
+  look_after_coupling();
   if (!report.solve.recovery.empty() && report.solve.converged)
     note("recovery",
          text_of("the pressure solve failed (", report.solve.cause, ") and went on with ", report.solve.recovery), 1);
@@ -111,6 +117,15 @@ void FluidSimulation::look_after(const StepReport& report) {
   require<NumericsError>(scene_.mps.pressure.on_stall == "warn" && std::isfinite(report.solve.residual), text,
                          "; a smaller mps.time_step, or mps.pressure.max_iterations larger, may help");
   note("stall", text, 1);
+}
+
+void FluidSimulation::look_after_coupling() {
+  if (coupler_.disagreed())
+    note("disagreement",
+         text_of("structures and the walls that the fluid saw differ by more than coupling.tolerance after ",
+                 coupler_.passes(), " passes -> a shorter mps.time_step, or coupling.max_iterations larger"),
+         1);
+  if (const std::string alarm = coupler_.alarm(); !alarm.empty()) note("alternation", alarm, 1);
 }
 
 void FluidSimulation::note(const std::string& kind, const std::string& text, std::int64_t count) {
@@ -145,6 +160,7 @@ StepFacts FluidSimulation::facts() {
 
 double FluidSimulation::sample(std::size_t index) {
   const ProbeCase& probe = scene_.probes[index];
+  if (is_of_structure(probe)) return sample_structure(probe);
   if (probe.kind == "wave_front") return or_nothing(wave_front(fluid_));
   if (probe.kind == "surface_height") return or_nothing(surface_height(fluid_, probe.x, probe.y));
   if (probe.kind == "wall_pressure") {
@@ -163,8 +179,23 @@ double FluidSimulation::sample(std::size_t index) {
   return static_cast<double>(particle_count(fluid_, probe.min, probe.max));
 }
 
+double FluidSimulation::sample_structure(const ProbeCase& probe) {
+  if (probe.kind != "structure_pressure" && probe.kind != "structure_force")
+    return structures_[probe.structure].sample(probe);
+  const WetSurface& surface = coupler_.body(probe.structure).surface;
+  const Eigen::VectorXd& loads = coupler_.loads(probe.structure);
+  if (probe.kind == "structure_pressure") return pressure_difference(surface, loads, band_of(scene_, probe));
+  double force = 0;
+  for (Eigen::Index i = probe.component.front() - 'x'; i < loads.size(); i += scene_.dimension) force += loads[i];
+  return force;
+}
+
 ProbeHead FluidSimulation::probe_head(std::size_t index) const {
   const std::string& kind = scene_.probes[index].kind;
+  if (kind == "structure_pressure") return {"pressure_difference", "Pa"};
+  if (kind == "structure_force")
+    return {"force_" + scene_.probes[index].component, scene_.dimension == 2 ? "N/m" : "N"};
+  if (is_of_structure(scene_.probes[index])) return structure_probe_head(scene_.probes[index]);
   if (kind == "wave_front") return {"front", "m"};
   if (kind == "surface_height") return {"height", "m"};
   if (kind == "wall_pressure") return {"pressure", "Pa"};
@@ -192,6 +223,9 @@ std::vector<std::string> FluidSimulation::plan() const {
   lines.push_back(text_of("walls     ", fluid_.walls.panels, fluid_.faces.dim == 2 ? " straight" : " plane",
                           " panels, ", fluid_.walls.count - fluid_.walls.panels, " reflections in corners"));
   lines.push_back("effects   " + effects_text(effects_));
+  for (const Structure& structure : structures_)
+    for (const std::string& line : structure.plan()) lines.push_back(line);
+  for (const std::string& line : coupling_lines(scene_)) lines.push_back(line);
   return lines;
 }
 
@@ -205,11 +239,32 @@ std::vector<WallShape> FluidSimulation::wall_shapes() const {
 }
 
 Picture FluidSimulation::picture() const {
-  return {{fluid_table()}, wall_shapes(), !effects_.at(Stage::walls).empty(), {}};
+  Picture picture{{fluid_table()}, wall_shapes(), coupler_.any() || !effects_.at(Stage::walls).empty(), {}};
+  for (const Structure& structure : structures_) picture.solids.push_back(structure.picture());
+  return picture;
 }
 
 std::vector<std::string> FluidSimulation::history_header() const {
-  return greenwater::history_header(scene_.dimension);
+  std::vector<std::string> header = greenwater::history_header(scene_.dimension);
+  if (!structures_.empty()) header.emplace_back("passes");
+  for (const Structure& structure : structures_)
+    for (const char* column : {"work_by_fluid_%[J]", "work_received_%[J]", "impulse_x_%[N s]", "impulse_y_%[N s]",
+                               "impulse_z_%[N s]", "balance_%[J]", "added_mass_%[-]"}) {
+      std::string name = column;
+      header.push_back(name.replace(name.find('%'), 1, structure.given().name));
+    }
+  return header;
+}
+
+/// What crosses the interfaces, and what the structures make of it, for the ledger in history.csv.
+void FluidSimulation::add_ledger(std::vector<double>& row) const {
+  if (!structures_.empty()) row.push_back(coupler_.passes());
+  for (std::size_t k = 0; k < structures_.size(); ++k) {
+    const InterfaceLedger::Sums& sums = coupler_.ledger(k).sums();
+    for (const double value : {sums.by_fluid, sums.by_structure, sums.impulse[0], sums.impulse[1], sums.impulse[2],
+                               structures_[k].march().energies().balance(), coupler_.added_mass_ratio(k)})
+      row.push_back(value);
+  }
 }
 
 std::string FluidSimulation::thermo_header() const { return greenwater::thermo_header(); }
@@ -222,6 +277,7 @@ RunFacts FluidSimulation::run_facts() {
   told.finite = std::isfinite(now.max_speed) && std::isfinite(now.kinetic_energy);
   told.work = static_cast<double>(now.particles);
   told.history = history_row(now);
+  add_ledger(told.history);
   told.thermo = thermo_line(now);
   told.notices = std::move(now.notices);
   return told;

@@ -1,7 +1,8 @@
 #pragma once
-// A scene of water and walls that marches.
+// A scene of water and walls that marches, with structures in it or without.
 
 #include "app/build.hpp"
+#include "app/build_coupling.hpp"
 #include "app/simulation.hpp"
 #include "app/step_length.hpp"
 #include "kernels/sample.hpp"
@@ -42,14 +43,21 @@ class FluidSimulation : public Simulation {
 
   const Fluid& fluid() const { return fluid_; }
   const Effects& effects() const { return effects_; }
+  const Coupler& coupler() const { return coupler_; }
 
  private:
   void note(const std::string& kind, const std::string& text, std::int64_t count);
   double time_after() const;
   void look_after(const StepReport& report);
+  void look_after_coupling();
+  void add_ledger(std::vector<double>& row) const;
+  double sample_structure(const ProbeCase& probe);
   double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
 
   Scene scene_;
+  std::vector<Structure> structures_;
+  WallFaces walls_at_start_;
+  Coupler coupler_;
   Fluid fluid_;
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;

@@ -50,7 +50,7 @@ void read_water(Section& root, Scene& scene) {
 /// Of a run without fluid: the step in which structures take their substeps.
 void read_step_alone(Section& root, Scene& scene) {
   constexpr double usual_steps = 1000;
-  for (const char* table : {"mps", "effects", "geometry", "domain"})
+  for (const char* table : {"mps", "effects", "domain"})
     require_at(root.place(table), !root.offers(table), "[", table,
                "] is about fluid, and there is no [[fluid]]: delete it");
   Section time = root.table("time");
@@ -91,6 +91,8 @@ VectorFormula read_formulas(Section& section, const FormulaWish& wish, int dimen
   return vector;
 }
 
+bool is_of_structure(const ProbeCase& probe) { return probe.kind.rfind("structure_", 0) == 0; }
+
 std::vector<std::string> box_sides(int dimension) {
   return dimension == 2 ? Words{"left", "right", "bottom", "top"}
                         : Words{"left", "right", "front", "back", "bottom", "top"};
@@ -119,7 +121,7 @@ Scene read_scene(CaseFile& file) {
   read_output(root.table("output"), scene.output);
   read_probes(root, scene);
   file.finish();
-  if (scene.has_fluid) check_scene(scene);
+  scene.has_fluid ? check_scene(scene) : check_scene_alone(scene);
   return scene;
 }
 

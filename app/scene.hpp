@@ -128,7 +128,8 @@ struct DefaultSchemeCase {
   double shifting = 7;         // part of disorder undone while the bulk of the fluid goes one spacing
   double smoothing = 0.4;      // rate x spacing / reference speed
   double surface_smoothing = 0.6;
-  double separation = 0.6;  // x spacing
+  double separation = 0.6;     // x spacing
+  double diagonal_factor = 1;  // the paper's C, for comparison
 };
 
 struct MpsCase {
@@ -161,17 +162,26 @@ struct SupportCase {
   Point min{}, max{};                         // of that box [m]
   std::vector<int> axes;                      // along which it holds; 0, 1, 2 for x, y, z
   std::optional<NumberFormula> displacement;  // of t [m], along each of the axes; absent: held
+  std::string with;                           // or: the geometry that it moves with; empty: none
 };
 
-/// What acts on a structure: a field over a part of its surface, times a factor in time.
+/// What acts on a structure: a field over a part of its surface or over the body, times a factor in time.
 struct StructureLoadCase {
   Place place;
-  std::string part;               // of the mesh: its facets; of a force, its nodes
-  std::string kind;               // pressure | traction | force
-  NumberFormula pressure;         // in x, y, z [Pa], against the outer side; with `follows` a number
-  VectorFormula vector;           // traction in x, y, z [Pa], or the force on the whole part [N]
-  bool follows = false;           // the pressure stays normal to the deformed facets
+  std::string part;        // of the mesh: its facets; of a force, its nodes
+  std::string kind;        // pressure | traction | force | acceleration
+  NumberFormula pressure;  // in x, y, z [Pa], against the outer side; with `follows` a number
+  VectorFormula vector;    // traction in x, y, z [Pa], the force on the whole part [N], or the acceleration of the
+                           // body in x, y, z, t [m/s^2]
+  bool follows = false;    // the pressure stays normal to the deformed facets
   NumberFormula factor{"1", {}};  // in t
+};
+
+/// Rigid walls that a structure may touch.
+struct ContactCase {
+  Place place;
+  std::vector<std::string> walls;  // names of geometries
+  double stiffness = 0.02;         // of a node's spring, over its mass and omega_max^2 of the mesh
 };
 
 /// An elastic body.
@@ -196,13 +206,27 @@ struct StructureCase {
   VectorFormula displacement, velocity;  // [m], [m/s] at the start
   std::vector<SupportCase> supports;
   std::vector<StructureLoadCase> loads;
+  std::optional<ContactCase> contact;
+  std::vector<std::string> wet;  // parts of the mesh that the fluid touches; in scenes without fluid, none
+  Place wet_place;
+  bool no_slip = false;  // viscous fluid sticks to it
+};
+
+/// How fluid and structures march together.
+struct CouplingCase {
+  std::string scheme = "default";  // default | aitken | staggered
+  std::string load = "transpose";  // transpose | least_squares | kernel_average
+  double tolerance = 5e-3;         // of the walls' largest speed
+  int max_iterations = 50;         // marches of the structures in one step
+  double relaxation = 0.1;         // aitken: the first one
 };
 
 struct ProbeCase {
   std::string name;
   Place place;
   std::string kind;             // wave_front | surface_height | wall_pressure | wall_force | particle_count |
-                                // structure_displacement | _velocity | _stress | _reaction | _energy
+                                // structure_displacement | _velocity | _stress | _reaction | _energy | _pressure |
+                                // _force
   double every_time = 0;        // [s]; 0 = every step
   Point point{};                // wall_pressure: where [m]
   double x = 0;                 // surface_height [m]
@@ -213,6 +237,7 @@ struct ProbeCase {
   Point facing{};               // wall_pressure on a wall: the direction from the wall into the water; zero: not said
   Point min{}, max{};           // particle_count: box; all of the fluid when equal
   std::size_t structure = 0;    // structure_*: which one; its place is `point`
+  double height_fraction = 0;   // structure_pressure: where on the plate
   std::string part;             // structure_reaction: of the mesh; empty: all of it
 };
 
@@ -241,6 +266,7 @@ struct Scene {
   FluidCase fluid;
   MpsCase mps;
   std::vector<StructureCase> structures;
+  CouplingCase coupling;                 // with fluid and structures
   double step = 0;                       // without fluid: of the run, in substeps of the structures [s]
   std::vector<ViscosityCase> viscosity;  // each effect: none or one
   std::vector<CollisionCase> collision;
@@ -248,6 +274,9 @@ struct Scene {
   OutputCase output;
   std::vector<ProbeCase> probes;
 };
+
+/// Whether the probe is of a structure.
+bool is_of_structure(const ProbeCase& probe);
 
 /// The sides of a box: left right (x), in 3-D front back (y), bottom top (the last axis).
 std::vector<std::string> box_sides(int dimension);

@@ -199,11 +199,8 @@ void check_body_force(const Check& check) {
 }
 
 void check_motion(const Check& check, const Shape& shape) {
+  require_motion(*shape.geometry);
   const MotionCase& motion = *shape.geometry->motion;
-  const bool moves = motion.displacement || motion.displacement_table || motion.velocity || motion.velocity_table;
-  require_at(motion.place, moves || motion.rotation || motion.rotation_table, "[geometry.", shape.geometry->name,
-             ".motion] does not say how it moves; give it one of displacement, displacement_table, velocity, "
-             "velocity_table, and/or one of rotation, rotation_table");
   const MpsCase& mps = check.scene.mps;
   const Motion compiled(motion);
   LongestStep longest = longest_step(compiled, check.scene.end, mps.time_step, reach_of(shape));
@@ -221,6 +218,27 @@ void check_motion(const Check& check, const Shape& shape) {
              " m in the step at t = ", longest.time, " s, more than one mps.spacing = ", mps.spacing,
              " m: water would be left behind it. Let the motion end in time (t < 0.1 ? ... : ...), or take a shorter "
              "mps.time_step");
+}
+
+/// A structure goes through no closed side of the tank that it stands in; the foot of a plate that leans may.
+void check_structures(const Check& check) {
+  const Scene& scene = check.scene;
+  if (scene.boxes.size() != 1) return;
+  const BoxCase& box = scene.boxes.front();
+  const auto sides = box_sides(scene.dimension);
+  const auto is_open = [&](const std::string& side) {
+    return std::find(box.open.begin(), box.open.end(), side) != box.open.end();
+  };
+  for (const StructureCase& structure : scene.structures) {
+    const double slack = check.slack + (structure.plate ? structure.plate->thickness : 0);
+    for (const Point& x : structure.mesh.nodes)
+      for (std::size_t d = 0; d < check.axes; ++d)
+        require_at(structure.place,
+                   (x[d] >= box.min[d] - slack || is_open(sides[2 * d])) &&
+                       (x[d] <= box.max[d] + slack || is_open(sides[2 * d + 1])),
+                   "the structure \"", structure.name, "\" reaches out of the box \"", box.name, "\" at ",
+                   shown_point(x, scene.dimension), " m; move or shrink it, or open that side of the box");
+  }
 }
 
 void check_domain(const Check& check) {
@@ -267,6 +285,7 @@ void check_scene(const Scene& scene) {
     check_fluid_in_only_wall(check);
   }
   check_walls(scene);
+  check_structures(check);
   check_domain(check);
   check_extent(check);
   check_time_step(check);

@@ -101,6 +101,7 @@ void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
   parts.shifting = section.number("shifting", "-", at_least(0), parts.shifting);
   parts.smoothing = section.number("smoothing", "-", at_least(0), parts.smoothing);
   parts.surface_smoothing = section.number("surface_smoothing", "-", at_least(0), parts.surface_smoothing);
+  parts.diagonal_factor = section.number("diagonal_factor", "-", at_least(1), parts.diagonal_factor);
   parts.separation = section.number("separation", "x spacing", between(0, 1), parts.separation);
 }
 

@@ -117,4 +117,12 @@ std::optional<MotionCase> read_motion(Section& geometry, int dimension) {
   return motion;
 }
 
+void require_motion(const GeometryCase& geometry) {
+  const MotionCase& motion = *geometry.motion;
+  const bool moves = motion.displacement || motion.displacement_table || motion.velocity || motion.velocity_table;
+  require_at(motion.place, moves || motion.rotation || motion.rotation_table, "[geometry.", geometry.name,
+             ".motion] does not say how it moves; give it one of displacement, displacement_table, velocity, "
+             "velocity_table, and/or one of rotation, rotation_table");
+}
+
 }  // namespace greenwater

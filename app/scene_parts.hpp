@@ -17,6 +17,11 @@ void read_output(Section output, OutputCase& options);  // [output]
 void read_probes(Section root, Scene& scene);           // [[probe]]
 void read_structures(Section root, Scene& scene);       // [[structure]]
 
+/// `wet` and `no_slip` of a structure in a fluid: what the fluid touches; all that is not held, unless the case says
+/// otherwise.
+void read_wet_surface(Section& section, int dimension, StructureCase& structure);
+void read_coupling(Section section, Scene& scene);  // [coupling]
+
 /// `[geometry.NAME]` with type = "stl": the file, scaled, turned, moved and checked. Throws CaseError that names the STL
 /// file, the triangle or line in it, and the cure.
 MeshCase read_mesh(const std::string& name, Section& section);
@@ -37,12 +42,18 @@ std::vector<Point> read_point_file(const std::filesystem::path& path, const Plac
 /// `[geometry.NAME.motion]`, where there is one. Its tables are read, its formulas compile, and it begins at rest.
 std::optional<MotionCase> read_motion(Section& geometry, int dimension);
 
+/// Throws CaseError when the motion of a geometry that has one says nothing.
+void require_motion(const GeometryCase& geometry);
+
 /// Plates in their box and apart, no walls that cut through each other. Throws CaseError.
 void check_walls(const Scene& scene);
 
 /// All of that: sizes against the spacing, walls against each other, fluid in the tank, motions against the step, all inside the
 /// domain. Throws CaseError.
 void check_scene(const Scene& scene);
+
+/// Of a scene without fluid: geometries that no structure has to do with, motions that are none. Throws CaseError.
+void check_scene_alone(const Scene& scene);
 
 /// The end of a box: `min` and `max` [m], each component of max above that of min.
 struct Corners {

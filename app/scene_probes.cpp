@@ -12,9 +12,12 @@ const Words fluid_kinds{"wave_front", "surface_height", "wall_pressure", "wall_f
 const Words structure_kinds{"structure_displacement", "structure_velocity", "structure_stress", "structure_reaction",
                             "structure_energy"};
 
+const Words load_kinds{"structure_pressure", "structure_force"};  // of the fluid on it
+
 Words kinds_of(const Scene& scene) {
   Words kinds = scene.has_fluid ? fluid_kinds : Words{};
   if (!scene.structures.empty()) kinds.insert(kinds.end(), structure_kinds.begin(), structure_kinds.end());
+  if (!scene.structures.empty() && scene.has_fluid) kinds.insert(kinds.end(), load_kinds.begin(), load_kinds.end());
   return kinds;
 }
 
@@ -43,7 +46,7 @@ void read_structure_kind(Section& section, const Scene& scene, ProbeCase& probe)
   probe.structure = static_cast<std::size_t>(&structure - scene.structures.data());
   const Words axes = structure.mesh.dim == 2 ? Words{"x", "y"} : Words{"x", "y", "z"};
   if (probe.kind == "structure_energy") {
-    const Words energies{"kinetic", "strain", "lost", "loads", "supports", "balance"};
+    const Words energies{"kinetic", "strain", "contact", "lost", "loads", "supports", "balance"};
     probe.component = section.choice("component", energies, std::string("strain"));
   } else if (probe.kind == "structure_stress") {
     probe.point = read_place_on(section, scene, structure);
@@ -53,6 +56,14 @@ void read_structure_kind(Section& section, const Scene& scene, ProbeCase& probe)
     for (const MeshPart& part : structure.mesh.parts) parts.push_back(part.name);
     if (section.offers("part")) probe.part = section.choice("part", parts, example(std::string("bottom")));
     probe.component = section.choice("component", axes, std::string("x"));
+  } else if (probe.kind == "structure_pressure") {
+    require_at(section.place("kind"), structure.plate.has_value(),
+               "a structure_pressure is the difference over a plate, and \"", name,
+               "\" is none; take structure_force, or shape = \"plate\"");
+    probe.height_fraction = section.number("height_fraction", "-", between(0, 1), example(0.5));
+  } else if (probe.kind == "structure_force") {
+    probe.component =
+        section.choice("component", scene.dimension == 2 ? Words{"x", "y"} : Words{"x", "y", "z"}, std::string("x"));
   } else {
     probe.point = read_place_on(section, scene, structure);
     probe.component = section.choice("component", axes, std::string("x"));
@@ -105,8 +116,7 @@ void read_probes(Section root, Scene& scene) {
     }
     probe.kind = section.choice("kind", kinds, example(kinds.front()));
     probe.every_time = section.number("every_time", "s", at_least(0), 0.0);
-    const bool of_structure = std::count(structure_kinds.begin(), structure_kinds.end(), probe.kind) > 0;
-    of_structure ? read_structure_kind(section, scene, probe) : read_kind(section, scene, probe);
+    is_of_structure(probe) ? read_structure_kind(section, scene, probe) : read_kind(section, scene, probe);
     scene.probes.push_back(probe);
   }
 }

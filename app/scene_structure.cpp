@@ -1,5 +1,6 @@
 // [[structure]]: elastic bodies, how they are held and loaded.
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/scene_parts.hpp"
@@ -128,12 +129,27 @@ NumberFormula read_formula(Section& section, const std::string& key, const std::
   return formula;
 }
 
-void read_supports(Section& section, int dimension, StructureCase& structure) {
+void read_support_motion(Section& one, const Scene& scene, const SolidMesh& mesh, SupportCase& support) {
+  if (!one.offers("with")) {
+    support.axes = read_axes(one, mesh.dim);
+    if (one.offers("displacement"))
+      support.displacement = read_formula(one, "displacement", "m", std::string("0"), Variables::time);
+    return;
+  }
+  for (const char* key : {"axes", "displacement"})
+    require_at(one.place(key), !one.offers(key), "a support that moves with a geometry does so along all axes: delete ",
+               key, ", or with");
+  const Words geometries = wall_names(scene);
+  require_at(one.place("with"), !geometries.empty(), "there is no geometry to move with: add [geometry.NAME]");
+  support.with = one.choice("with", geometries, example(geometries.front()));
+}
+
+void read_supports(Section& section, const Scene& scene, StructureCase& structure) {
   const Preset<Words> usual = structure.plate ? Words{"bottom"} : Words{};
   const Words parts = part_names_of(structure.mesh);
   const std::vector<int> all_axes = structure.mesh.dim == 2 ? std::vector{0, 1} : std::vector{0, 1, 2};
   for (const std::string& part : section.choices("clamp", parts, usual)) {
-    structure.supports.push_back({section.place("clamp"), part, {}, {}, all_axes, {}});
+    structure.supports.push_back({section.place("clamp"), part, {}, {}, all_axes, {}, {}});
   }
   for (Section& one : section.list("support")) {
     SupportCase support;
@@ -141,27 +157,30 @@ void read_supports(Section& section, int dimension, StructureCase& structure) {
     if (one.offers("part")) {
       support.part = one.choice("part", parts, example(parts.empty() ? std::string("foot") : parts.front()));
     } else {
-      const Corners box = read_corners(one, dimension, {{0, 0, 0}, {0.01, 0.01, 0.01}});
+      const Corners box = read_corners(one, scene.dimension, {{0, 0, 0}, {0.01, 0.01, 0.01}});
       support.min = box.min;
       support.max = box.max;
     }
-    support.axes = read_axes(one, structure.mesh.dim);
-    if (one.offers("displacement"))
-      support.displacement = read_formula(one, "displacement", "m", std::string("0"), Variables::time);
+    read_support_motion(one, scene, structure.mesh, support);
     structure.supports.push_back(support);
   }
+}
+
+void read_loaded_part(Section& section, const StructureCase& structure, StructureLoadCase& load) {
+  const Words parts = part_names_of(structure.mesh);
+  require_at(section.place(), !parts.empty(), "the mesh has no part to be loaded: give it physical groups");
+  load.part = section.choice("part", parts, example(parts.front()));
+  const MeshPart& part = *find_part(structure.mesh, load.part);
+  require_at(section.place("part"), load.kind == "force" || !part.facets.empty(), "\"", load.part,
+             "\" has nodes but no surface: a ", load.kind, " acts on surfaces; take kind = \"force\"");
 }
 
 StructureLoadCase read_load(Section& section, int dimension, const StructureCase& structure) {
   StructureLoadCase load;
   load.place = section.place();
-  const Words parts = part_names_of(structure.mesh);
-  require_at(section.place(), !parts.empty(), "the mesh has no part to be loaded: give it physical groups");
-  load.part = section.choice("part", parts, example(parts.front()));
-  load.kind = section.choice("kind", {"pressure", "traction", "force"}, example<std::string>("pressure"));
-  const MeshPart& part = *find_part(structure.mesh, load.part);
-  require_at(section.place("part"), load.kind == "force" || !part.facets.empty(), "\"", load.part,
-             "\" has nodes but no surface: a ", load.kind, " acts on surfaces; take kind = \"force\"");
+  load.kind =
+      section.choice("kind", {"pressure", "traction", "force", "acceleration"}, example<std::string>("pressure"));
+  if (load.kind != "acceleration") read_loaded_part(section, structure, load);
   const Variables place = Variables::place_and_time;
   if (load.kind == "pressure") {
     load.pressure = read_formula(section, "pressure", "Pa", example<std::string>("1000"), place);
@@ -169,11 +188,23 @@ StructureLoadCase read_load(Section& section, int dimension, const StructureCase
     require_at(section.place("follows"), !load.follows || Formula(load.pressure.text, load.pressure.place).constant(),
                "a pressure that follows is one number; let it vary in time by factor");
   } else {
-    const std::string unit = load.kind == "force" ? "N" : "Pa";
+    const std::string unit = load.kind == "force" ? "N" : load.kind == "traction" ? "Pa" : "m/s^2";
     load.vector = read_formulas(section, {load.kind, unit, example(Formulas{"1", "0", "0"}), place}, dimension);
   }
   load.factor = read_formula(section, "factor", "-", std::string("1"), Variables::time);
   return load;
+}
+
+std::optional<ContactCase> read_contact(Section& section, const Scene& scene) {
+  auto table = section.table_if_present("contact");
+  if (!table) return {};
+  const Words geometries = wall_names(scene);
+  require_at(table->place(), !geometries.empty(), "there is no geometry to touch: add [geometry.NAME]");
+  ContactCase contact;
+  contact.place = table->place();
+  contact.walls = table->choices("walls", geometries, example(geometries));
+  contact.stiffness = table->number("stiffness", "-", {0, 1, false}, contact.stiffness);
+  return contact;
 }
 
 StructureCase read_structure(Section& section, const Scene& scene) {
@@ -192,8 +223,10 @@ StructureCase read_structure(Section& section, const Scene& scene) {
   const Preset<Formulas> none = Formulas{"0", "0", "0"};
   structure.displacement = read_formulas(section, {"displacement", "m", none, {}}, scene.dimension);
   structure.velocity = read_formulas(section, {"velocity", "m/s", none, {}}, scene.dimension);
-  read_supports(section, scene.dimension, structure);
+  read_supports(section, scene, structure);
   for (Section& load : section.list("load")) structure.loads.push_back(read_load(load, scene.dimension, structure));
+  structure.contact = read_contact(section, scene);
+  if (scene.has_fluid) read_wet_surface(section, scene.dimension, structure);
   return structure;
 }
 
@@ -206,12 +239,8 @@ const StructureCase* find_structure(const Scene& scene, const std::string& name)
 }
 
 void read_structures(Section root, Scene& scene) {
-  for (Section& section : root.list("structure")) {
-    require_at(
-        section.place(), !scene.has_fluid,
-        "this version runs structures alone, and fluid without them: take [[fluid]] and [mps] out, or the structure");
-    scene.structures.push_back(read_structure(section, scene));
-  }
+  for (Section& section : root.list("structure")) scene.structures.push_back(read_structure(section, scene));
+  if (scene.has_fluid && !scene.structures.empty()) read_coupling(root.table("coupling"), scene);
 }
 
 }  // namespace greenwater

@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "coupling/coupler.hpp"
 #include "kernels/acceleration.hpp"
 #include "kernels/effects/effect.hpp"
 #include "kernels/pressure_solver.hpp"
@@ -23,7 +24,12 @@ class Scheme {
  public:
   virtual ~Scheme() = default;
   /// One step from t to t + dt. Rows are those of the positions of the pressure solve afterwards.
-  virtual StepReport step(Fluid& fluid, Effects& effects, real dt) = 0;
+  virtual StepReport step(Fluid& fluid, Effects& effects, Coupler& coupler, real dt) = 0;
+  /// Without structures.
+  StepReport step(Fluid& fluid, Effects& effects, real dt) {
+    Coupler none;
+    return step(fluid, effects, none, dt);
+  }
 
   /// Asks for the reaction of a body (kernels/reaction.hpp) in every report from now on; returns its place there, or -1
   /// from a scheme that knows none.
@@ -46,6 +52,7 @@ struct DefaultOptions {
   real shifting = 7;         // part of disorder that is undone while the fluid goes l0 ...
   real most_shifting = real(1.5);  // ... and in one step at most
   SmoothingOptions smoothing;      // its speed is set to U
+  real diagonal_factor = 1;        // C, on the diagonal of the pressure's rows: above 1 the fluid gives way to pressure
   real separation = real(0.6);     // particles closer than this, x spacing, and approaching are held apart; 0: not
 };
 

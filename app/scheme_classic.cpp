@@ -19,16 +19,40 @@ namespace {
 
 class Classic : public Scheme {
  public:
+  using Scheme::step;
+
   explicit Classic(const ClassicOptions& options)
       : options_(options), pressure_(options.pressure), solver_(make_pressure_solver(options.solver)) {}
 
-  StepReport step(Fluid& fluid, Effects& effects, real dt) override {
+  StepReport step(Fluid& fluid, Effects& effects, Coupler& coupler, real dt) override {
+    // 0  where structures go
+    coupler.foresee(fluid, dt);
+    if (coupler.repeats_steps()) copy(fluid.particles, start_);
+    StepReport report = up_to_pressure(fluid, effects, coupler, dt);
+    while (coupler.answer_of_whole_step(fluid, dt)) {
+      const int before = report.solve.iterations;
+      copy(start_, fluid.particles);
+      settle_rows(fluid);  // as the first attempt has sorted them
+      report = up_to_pressure(fluid, effects, coupler, dt);
+      report.solve.iterations += before;
+    }
+
+    // 4  what the pressure does
+    pressure_gradient(fluid);
+    report.stopped += correct(fluid, dt);
+    coupler.finish(fluid, dt);
+    return report;
+  }
+
+ private:
+  StepReport up_to_pressure(Fluid& fluid, Effects& effects, Coupler& coupler, real dt) {
     StepReport report;
 
     // 1  explicit part: everything but pressure
     clear_acceleration(fluid);
     effects.run(Stage::force, fluid, dt);
     effects.run(Stage::walls, fluid, dt);
+    coupler.place_walls(fluid, dt);
     report.stopped = predict(fluid, dt);
     effects.run(Stage::after_move, fluid, dt);
 
@@ -39,14 +63,9 @@ class Classic : public Scheme {
     mark_surface(fluid, options_.surface_ratio);
     report.solve = solve_pressure(fluid, dt);
     clip_pressure(fluid);
-
-    // 4  what the pressure does
-    pressure_gradient(fluid);
-    report.stopped += correct(fluid, dt);
     return report;
   }
 
- private:
   SolveReport solve_pressure(Fluid& fluid, real dt) {
     Region region("pressure");
     pressure_.assemble(fluid, dt);
@@ -56,6 +75,7 @@ class Classic : public Scheme {
   ClassicOptions options_;
   PressureSystem pressure_;
   std::unique_ptr<PressureSolver> solver_;
+  Particles start_;  // of a step that may be made again; else empty
 };
 
 }  // namespace

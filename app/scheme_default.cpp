@@ -9,16 +9,19 @@ namespace {
 
 class Default : public Scheme {
  public:
+  using Scheme::step;
+
   explicit Default(const DefaultOptions& options)
       : options_(options), pressure_({}), solver_(make_pressure_solver(options.solver)) {
     if (options.separation > 0) separation_ = make_collision({options.separation, real(0.2), 5});
   }
 
-  StepReport step(Fluid& fluid, Effects& effects, real dt) override {
+  StepReport step(Fluid& fluid, Effects& effects, Coupler& coupler, real dt) override {
     StepReport report;
 
     // 1  who is near whom, and what but pressure and gravity does
     effects.run(Stage::wall_speeds, fluid, dt);
+    coupler.foresee(fluid, dt);
     report.departed = settle_rows(fluid);
     clear_acceleration(fluid);
     effects.run(Stage::force, fluid, dt);
@@ -26,8 +29,9 @@ class Default : public Scheme {
 
     // 2  the pressure that keeps the flow free of divergence
     const real bulk = bulk_speed(fluid), U = options_.reference_speed > 0 ? options_.reference_speed : bulk;
-    survey(fluid, table_of(fluid), survey_options(U, bulk * dt / static_cast<real>(fluid.spacing)), dt, survey_);
-    report.solve = solve_pressure(fluid);
+    survey(fluid, table_of(fluid), survey_options(coupler, U, bulk * dt / static_cast<real>(fluid.spacing)), dt,
+           survey_);
+    report.solve = solve_pressure(fluid, coupler, dt);
 
     for (const int body : watched_) report.reactions.push_back(wall_reaction(fluid, survey_, body));
 
@@ -38,8 +42,10 @@ class Default : public Scheme {
     // 4  particles and walls go on
     report.stopped = advance(fluid, survey_, dt);
     effects.run(Stage::walls, fluid, dt);
+    coupler.place_walls(fluid, dt);
     if (separation_) keep_apart(fluid, dt);
     effects.run(Stage::after_move, fluid, dt);
+    coupler.finish(fluid, dt);
     return report;
   }
 
@@ -55,19 +61,39 @@ class Default : public Scheme {
   }
 
   // U: the flow's speed [m/s]; way: of the bulk of the fluid in this step, x spacing.
-  SurveyOptions survey_options(real U, real way) const {
+  SurveyOptions survey_options(const Coupler& coupler, real U, real way) const {
     SurveyOptions options;
     options.drift_speed = options_.drift * U;
-    options.loads = !watched_.empty();
+    options.loads = !watched_.empty() || coupler.any();
     options.shifts = options_.shifting > 0;
     if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
     return options;
   }
 
-  SolveReport solve_pressure(Fluid& fluid) {
-    Region region("pressure");
+  // Once, and again as long as structures say so.
+  SolveReport solve_pressure(Fluid& fluid, Coupler& coupler, real dt) {
     pressure_.assemble(fluid, survey_.rhs, survey_.diagonal, survey_.fixed);
+    if (options_.diagonal_factor > 1) pressure_.raise_diagonal(options_.diagonal_factor - 1);
+    coupler.join(fluid, survey_, pressure_, dt);
+    SolveReport report = solve(fluid);
+    while (coupler.answer(fluid, pressure_, dt)) {
+      const int before = report.iterations;
+      report = solve_again(fluid);
+      report.iterations += before;
+    }
+    if (coupler.weighs()) coupler.weigh(fluid, pressure_, *solver_);
+    return report;
+  }
+
+  SolveReport solve(Fluid& fluid) {
+    Region region("pressure");
     return solver_->solve(pressure_, fluid.particles.pressure);
+  }
+
+  // Nothing but the walls' speeds has changed.
+  SolveReport solve_again(Fluid& fluid) {
+    Region region("pressure");
+    return solver_->solve_again(pressure_, fluid.particles.pressure);
   }
 
   void keep_apart(Fluid& fluid, real dt) {

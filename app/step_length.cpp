@@ -21,22 +21,29 @@ double step_at_rest(const Scene& scene) {
   return fall > 0 ? std::min(dt, share * std::sqrt(mps.spacing / fall)) : dt;
 }
 
-StepLength::StepLength(const Scene& scene)
+StepLength::StepLength(const Scene& scene, double quantum)
     : adaptive_(scene.mps.adaptive),
       at_rest_(step_at_rest(scene)),
       end_(scene.end),
       way_(scene.mps.courant * scene.mps.spacing),
-      growth_(scene.mps.growth) {
+      growth_(scene.mps.growth),
+      quantum_(quantum) {
   for (const Shape& shape : shapes_of(scene))
     if (shape.geometry->motion) walls_.push_back({Motion(*shape.geometry->motion), reach_of(shape)});
 }
 
 double StepLength::next(const Fluid& fluid, double previous) const {
   if (!adaptive_) return at_rest_;
-  const double dt = slow_enough(fluid, std::min(at_rest_, growth_ * previous));
+  const double dt = whole(slow_enough(fluid, std::min(at_rest_, growth_ * previous)));
   const double left = end_ - fluid.time;
   if (left <= 0 || left >= 2 * dt) return dt;
-  return left <= dt ? left : left / 2;
+  return left <= dt ? whole(left) : whole(left / 2);
+}
+
+/// The multiple below, one at least.
+double StepLength::whole(double dt) const {
+  constexpr double round_off = 1e-9;
+  return quantum_ > 0 ? std::max(1.0, std::floor(dt / quantum_ + round_off)) * quantum_ : dt;
 }
 
 double StepLength::slow_enough(const Fluid& fluid, double dt) const {

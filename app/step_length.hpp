@@ -14,7 +14,8 @@ double step_at_rest(const Scene& scene);
 
 class StepLength {
  public:
-  explicit StepLength(const Scene& scene);
+  /// `quantum`: where steps adapt they are multiples of it, a substep of structures [s]; 0: of nothing.
+  explicit StepLength(const Scene& scene, double quantum = 0);
 
   /// The step from fluid.time on [s]. Where steps adapt: the bulk of the fluid, and no wall, moves further than courant l0
   /// in it; it is at most growth x `previous` [s] (infinite: there is none), and such that the last step ends at the end of
@@ -27,6 +28,7 @@ class StepLength {
     Motion motion;
     double reach;  // [m] from its axis
   };
+  double whole(double dt) const;
   double slow_enough(const Fluid& fluid, double dt) const;
   double slow_enough_for_walls(double time, double longest) const;
 
@@ -34,6 +36,7 @@ class StepLength {
   double at_rest_, end_;  // [s]
   double way_;            // courant l0 [m]
   double growth_;         // [-]
+  double quantum_;        // [s]
   std::vector<MovingWall> walls_;
 };
 

@@ -75,18 +75,24 @@ std::vector<Point> rows_of(const Solid& solid, const Eigen::VectorXd& values) {
 
 }  // namespace
 
-Structure::Structure(const Scene& scene, const StructureCase& given, double step)
-    : given_(given), solid_(build_solid(given)), supports_(build_supports(given)), loaded_(is_loaded(scene, given)) {
-  const MarchOptions options = march_options(step);
+Structure::Structure(const Scene& scene, const StructureCase& given, double step, int least_substeps)
+    : given_(given),
+      solid_(build_solid(given)),
+      supports_(build_supports(scene, given)),
+      loaded_(is_loaded(scene, given)) {
+  choose_substeps(step, least_substeps);
+  choose_damping();
   march_ = built_at(given_.place, [&] {
-    return std::make_unique<March>(*solid_, supports_, build_loads(scene, *solid_, given_), options,
-                                   at_nodes(*solid_, given_.displacement), at_nodes(*solid_, given_.velocity));
+    return std::make_unique<March>(*solid_, supports_, build_loads(scene, *solid_, given_), march_options(),
+                                   at_nodes(*solid_, given_.displacement), at_nodes(*solid_, given_.velocity),
+                                   build_contact(scene, *solid_, given_));
   });
 }
 
-MarchOptions Structure::march_options(double step) {
+void Structure::choose_substeps(double step, int least) {
   constexpr double most_substeps = 1e9;
   critical_ = critical_step(*solid_, supports_);
+  if (given_.contact) critical_ = Contact::critical_step(critical_, given_.contact->stiffness);
   require_at(given_.time_step_place, given_.time_step < critical_, "time_step = ", given_.time_step,
              " s is not below the critical step of \"", given_.name, "\", ", critical_,
              " s (2/omega_max): the structure would explode; take less, or leave it out for ", given_.safety, " of it");
@@ -94,15 +100,16 @@ MarchOptions Structure::march_options(double step) {
   const double substeps = std::isfinite(longest) ? std::ceil(step / longest * (1 - 1e-9)) : 1;
   require_at(given_.time_step_place, substeps <= most_substeps, "substeps of ", longest, " s make ", substeps,
              " in one step of ", step, " s; take a longer time_step, or a coarser mesh");
-  substeps_ = std::max(1, static_cast<int>(substeps));
+  substeps_ = std::max(least, static_cast<int>(substeps));
   substep_ = step / substeps_;
+}
+
+void Structure::choose_damping() {
   damping_ = given_.damping;
-  if (given_.damping_ratio) {
-    const double frequency =
-        given_.damping_frequency > 0 ? given_.damping_frequency : lowest_modes(*solid_, supports_, 1).frequencies[0];
-    damping_ = damping_of(*given_.damping_ratio, frequency);
-  }
-  return {substep_, damping_, 0};
+  if (!given_.damping_ratio) return;
+  const double frequency =
+      given_.damping_frequency > 0 ? given_.damping_frequency : lowest_modes(*solid_, supports_, 1).frequencies[0];
+  damping_ = damping_of(*given_.damping_ratio, frequency);
 }
 
 double Structure::stress_at(const Point& place, const std::string& component) const {
@@ -129,6 +136,7 @@ double Structure::sample(const ProbeCase& probe) const {
   const Energies energies = march_->energies();
   if (probe.component == "kinetic") return energies.kinetic;
   if (probe.component == "strain") return energies.strain;
+  if (probe.component == "contact") return energies.contact;
   if (probe.component == "lost") return energies.lost;
   if (probe.component == "loads") return energies.loads;
   return probe.component == "supports" ? energies.supports : energies.balance();
@@ -153,7 +161,7 @@ std::vector<std::string> Structure::plan() const {
                               given_.kinematics, solid_->mass().sum() / solid_->dim()));
   lines.push_back(fmt::format("          {} substeps of {:.6g} s in a step, {:.2f} of the critical {:.4g} s", substeps_,
                               substep_, substep_ / critical_, critical_));
-  if (supports_.held.empty() && loaded_)
+  if (supports_.held.empty() && loaded_ && !given_.contact)
     lines.push_back(fmt::format(
         "warning   {} is held nowhere and loaded: it will fly away -> clamp, [[structure.support]]", given_.name));
   for (const std::string& line : frequency_lines()) lines.push_back(line);

@@ -13,8 +13,9 @@ namespace greenwater {
 class Structure {
  public:
   /// Ready for steps of `step` [s], in equal substeps: not longer than the case's time_step, or without one than safety x
-  /// critical. Throws CaseError when it cannot be built, or when time_step is at or above the critical step.
-  Structure(const Scene& scene, const StructureCase& given, double step);
+  /// critical, and so many at least. Throws CaseError when it cannot be built, or when time_step is at or above the
+  /// critical step.
+  Structure(const Scene& scene, const StructureCase& given, double step, int least_substeps = 1);
 
   void advance() { march_->advance(substeps_); }
 
@@ -22,6 +23,8 @@ class Structure {
   const Solid& solid() const { return *solid_; }
   const Supports& supports() const { return supports_; }
   const March& march() const { return *march_; }
+  March& march() { return *march_; }
+  MarchOptions march_options() const { return {substep_, damping_, 0}; }
   int substeps() const { return substeps_; }
 
   double sample(const ProbeCase& probe) const;
@@ -30,7 +33,8 @@ class Structure {
   std::vector<std::string> plan() const;
 
  private:
-  MarchOptions march_options(double step);
+  void choose_substeps(double step, int least);
+  void choose_damping();
   std::vector<std::string> frequency_lines() const;
   double stress_at(const Point& place, const std::string& component) const;
 

@@ -9,10 +9,10 @@
 namespace greenwater {
 namespace {
 
-constexpr const char* energy_names[] = {"kinetic", "strain", "lost", "loads", "supports", "balance"};
+constexpr const char* energy_names[] = {"kinetic", "strain", "contact", "lost", "loads", "supports", "balance"};
 
-std::array<double, 6> values_of(const Energies& e) {
-  return {e.kinetic, e.strain, e.lost, e.loads, e.supports, e.balance()};
+std::array<double, 7> values_of(const Energies& e) {
+  return {e.kinetic, e.strain, e.contact, e.lost, e.loads, e.supports, e.balance()};
 }
 
 /// The largest of the lengths of all nodes' vectors.
@@ -25,9 +25,8 @@ double longest(const Solid& solid, const Eigen::VectorXd& values) {
 
 }  // namespace
 
-StructureSimulation::StructureSimulation(const Scene& scene) : scene_(scene), step_(scene.step) {
-  for (const StructureCase& given : scene_.structures) structures_.emplace_back(scene_, given, step_);
-}
+StructureSimulation::StructureSimulation(const Scene& scene)
+    : scene_(scene), step_(scene.step), structures_(build_structures(scene)) {}
 
 void StructureSimulation::step() {
   Region region("structures");

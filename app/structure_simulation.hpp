@@ -1,7 +1,7 @@
 #pragma once
 // A scene of structures without fluid.
 
-#include "app/structure.hpp"
+#include "app/build_coupling.hpp"
 
 namespace greenwater {
 
