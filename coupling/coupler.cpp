@@ -5,7 +5,6 @@
 
 #include "core/check.hpp"
 #include "coupling/wall_rows.hpp"
-#include "fem/held_load_answer.hpp"
 #include "fem/modes.hpp"
 
 namespace greenwater {
@@ -18,6 +17,10 @@ Reading reading_of(LoadReading load) {
 // div(u) per push: the pressure's source is -(rho / dt) of it, and a push is a force per pressure of a volume l0^d.
 double per_push(const Fluid& fluid, double dt) {
   return fluid.rho / (dt * std::pow(fluid.spacing, fluid.particles.dim));
+}
+
+void put(const Eigen::RowVectorXd& from, double factor, real* to) {
+  for (Eigen::Index i = 0; i < from.size(); ++i) to[i] = static_cast<real>(factor * from[i]);
 }
 
 void fill(Exchange<CoordField>& field, const Eigen::VectorXd& values, int dim) {
@@ -54,10 +57,6 @@ Coupler::Coupler(std::vector<ElasticBody> bodies, const WallFaces& walls, const 
   change_ = Exchange<ScalarField>("greenwater::corner_change", unknowns_);
 }
 
-int Coupler::substeps(const Coupled& one, double dt) const {
-  return static_cast<int>(std::lround(dt / one.body.options.step));
-}
-
 /// From the start of the step. The paper's load is that of the instant; one that is found later acts half in the first
 /// kick (fem/march.hpp).
 void Coupler::march(Coupled& one, const Eigen::VectorXd& load, double dt) {
@@ -65,7 +64,7 @@ void Coupler::march(Coupled& one, const Eigen::VectorXd& load, double dt) {
   const Eigen::VectorXd force = one.body.surface.on_nodes(load);
   one.body.march->set_state(one.start);
   if (options_.way == CouplingWay::staggered) one.body.march->set_held(force);
-  one.body.march->advance(substeps(one, dt), force);
+  one.body.march->advance(substeps(one.body, dt), force);
   one.speed = (one.body.surface.at_corners(one.body.march->displacement()) - one.placed) / dt;
 }
 
@@ -93,7 +92,7 @@ void Coupler::foresee(Fluid& fluid, double dt) {
     march(one, one.load, dt);
     one.foreseen = one.body.march->state();
     // What it would be without load, as the answer tells it: what the answer is wrong by is then that of the load's change.
-    if (options_.way == CouplingWay::joint) one.speed -= one.answer * one.load;
+    if (options_.way == CouplingWay::joint) one.speed -= one.answer.matrix() * one.load;
     one.base = one.speed;
     give_speeds(fluid, one, dt);
   }
@@ -112,46 +111,26 @@ void Coupler::join(const Fluid& fluid, const Survey& survey, PressureSystem& sys
   system.set_added(&term_);
 }
 
-/// The answers of the substeps themselves, about the shape at rest. Of steps that differ little they differ little, and
-/// what they are wrong by is corrected: so they are made anew only now and then. In a 2-D fluid they turn with the surface.
 void Coupler::renew_answers(double dt) {
-  constexpr double much = 1.25, far = 2e-3;  // of steps; [rad]
   if (options_.way != CouplingWay::joint) return;
-  const bool anew = answer_dt_ == 0 || dt > much * answer_dt_ || answer_dt_ > much * dt;
-  if (anew) answer_dt_ = dt;
-  for (Coupled& one : bodies_) {
-    const ElasticBody& body = one.body;
-    if (anew) {
-      const Eigen::SparseMatrix<double> patterns = body.surface.mean().transpose();
-      one.answer_at_rest = body.surface.depth() / dt *
-                           held_load_answer(*body.solid, *body.supports, patterns, body.options, substeps(one, dt));
-    }
-    const bool turns = body.surface.fluid_dim() == 2 && !body.solid->linear();
-    const Eigen::VectorXd turn =
-        turns ? body.surface.turn_of_corners(one.placed) : Eigen::VectorXd::Zero(body.surface.corners());
-    if (!anew && (turn - one.turn).lpNorm<Eigen::Infinity>() < far) continue;
-    one.turn = turn;
-    one.answer = one.answer_at_rest;
-    for (Eigen::Index c = 0; turns && c < turn.size(); ++c) {
-      const Eigen::Matrix2d by = Eigen::Rotation2Dd(turn[c]).toRotationMatrix();
-      one.answer.middleRows<2>(2 * c) = (by * one.answer.middleRows<2>(2 * c)).eval();
-      one.answer.middleCols<2>(2 * c) = (one.answer.middleCols<2>(2 * c) * by.transpose()).eval();
-    }
-    answers_changed_ = true;
-  }
+  for (Coupled& one : bodies_) answers_changed_ |= one.answer.renew(one.body, one.placed, dt);
 }
 
 void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
   if (!answers_changed_ && dt == handed_dt_) return;
   answers_changed_ = false;
   handed_dt_ = dt;
-  std::vector<real> C(static_cast<std::size_t>(unknowns_) * unknowns_, 0);
-  for (const Coupled& one : bodies_)
-    for (Eigen::Index row = 0; row < one.answer.rows(); ++row)
-      for (Eigen::Index column = 0; column < one.answer.cols(); ++column)
-        C[(one.first_unknown + row) * unknowns_ + one.first_unknown + column] =
-            static_cast<real>(per_push(fluid, dt) * one.answer(row, column));
-  term_.set_answer(C);
+  const double scale = per_push(fluid, dt);
+  std::vector<real> C(static_cast<std::size_t>(unknowns_) * unknowns_, 0), leading;
+  for (const Coupled& one : bodies_) {
+    for (Eigen::Index row = 0; row < one.answer.matrix().rows(); ++row)
+      put(one.answer.matrix().row(row), scale, &C[(one.first_unknown + row) * unknowns_ + one.first_unknown]);
+    for (Eigen::Index k = 0; k < one.answer.leading().rows(); ++k) {
+      leading.resize(leading.size() + unknowns_, 0);
+      put(one.answer.leading().row(k), std::sqrt(scale), leading.data() + leading.size() - unknowns_ + one.first_unknown);
+    }
+  }
+  term_.set_answer(C, leading);
 }
 
 void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
@@ -172,7 +151,7 @@ void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
 /// The speeds of the walls as the solve had them.
 Eigen::VectorXd Coupler::seen(const Coupled& one) const {
   if (options_.way != CouplingWay::joint) return one.base;
-  return one.base + one.answer * one.load;
+  return one.base + one.answer.matrix() * one.load;
 }
 
 Eigen::VectorXd Coupler::residual() const {

@@ -15,24 +15,15 @@
 #include <vector>
 
 #include "coupling/coupling_options.hpp"
+#include "coupling/elastic_body.hpp"
 #include "coupling/exchange.hpp"
 #include "coupling/interface_ledger.hpp"
+#include "coupling/structure_answer.hpp"
 #include "coupling/surface_load.hpp"
-#include "fem/march.hpp"
 #include "kernels/pressure_solver.hpp"
 #include "kernels/survey.hpp"
 
 namespace greenwater {
-
-/// A structure as the coupling sees it. What it points to must outlive it.
-struct ElasticBody {
-  const Solid* solid = nullptr;
-  const Supports* supports = nullptr;
-  March* march = nullptr;
-  MarchOptions options;  // of the march
-  WetSurface surface;
-  int first_face = 0;  // of the surface's faces among those of the fluid
-};
 
 class Coupler {
  public:
@@ -93,8 +84,7 @@ class Coupler {
     Eigen::VectorXd before;                  // in the last one
     Eigen::VectorXd load;                    // on the corners
     Eigen::VectorXd applied;                 // that under which the structure has gone through this step
-    Eigen::MatrixXd answer, answer_at_rest;  // C: speeds per load
-    Eigen::VectorXd turn;                    // of the corners, with which the answer was turned [rad]
+    StructureAnswer answer;                  // C
     Eigen::VectorXd mode;  // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
     double added_mass = std::numeric_limits<double>::quiet_NaN();  // over the structure's
     March::State start;                                            // of this step
@@ -116,15 +106,14 @@ class Coupler {
   Eigen::VectorXd relaxed(const Eigen::VectorXd& residual);
   bool agreed(const Eigen::VectorXd& residual, const Fluid& fluid, double dt) const;
   Eigen::VectorXd seen(const Coupled& one) const;
-  int substeps(const Coupled& one, double dt) const;
 
   std::vector<Coupled> bodies_;
   CouplingOptions options_;
   int unknowns_ = 0, passes_ = 0;
   bool disagreed_ = false;
   AddedTerm term_;
-  double answer_dt_ = 0, handed_dt_ = 0;  // steps of the answers, and with which the term has them [s]
-  bool answers_changed_ = false;
+  bool answers_changed_ = false;  // since they were handed over
+  double handed_dt_ = 0;          // step with which they were [s]
   Exchange<ScalarField> felt_, change_;
   PointSampler sampler_;
   Eigen::VectorXd last_residual_;

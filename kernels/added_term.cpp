@@ -84,8 +84,10 @@ void AddedTerm::set_rows(int unknowns, const std::vector<AddedEntry>& D) {
   upload(particle_, "greenwater::added_particle", particles);
 }
 
-void AddedTerm::set_answer(const std::vector<real>& C) {
+void AddedTerm::set_answer(const std::vector<real>& C, const std::vector<real>& leading) {
   expect(C.size() == static_cast<std::size_t>(unknowns_) * unknowns_);
+  expect(unknowns_ == 0 || leading.size() % unknowns_ == 0);
+  leading_ = leading;
   upload(C_, "greenwater::added_answers", C);
   if (static_cast<int>(felt_.extent(0)) >= unknowns_) return;
   felt_ = uncleared<ScalarField>("greenwater::added_felt", unknowns_ + unknowns_ / 4);

@@ -26,9 +26,14 @@ class AddedTerm {
   /// D, for particles as they are sorted now. Memory is kept and only grown. Entries of one particle and unknown add up.
   void set_rows(int unknowns, const std::vector<AddedEntry>& D);
   /// C(row, column), as many rows as unknowns, row by row. D C D^T has the unit of the pressure operator [1/m^2].
-  void set_answer(const std::vector<real>& C);
+  /// `leading`, row by row as well: the eigenvectors of C with the largest eigenvalues, each times the root of its own, for
+  /// preconditioners (kernels/preconditioner_with_term.hpp). Their number is the caller's choice, 0 is one.
+  void set_answer(const std::vector<real>& C, const std::vector<real>& leading);
 
   int unknowns() const { return unknowns_; }
+  /// Whether D has entries.
+  bool acts() const { return touched_ > 0; }
+  const std::vector<real>& leading() const { return leading_; }
 
   /// felt = D^T p, as long as there are unknowns.
   void feel(const ScalarField& p, const ScalarField& felt) const;
@@ -44,6 +49,7 @@ class AddedTerm {
   AddedLists of_particle_;  // of those touched
   IndexField particle_;     // (touched)
   ScalarField C_;           // (row, column)
+  std::vector<real> leading_;
   ScalarField felt_;        // (unknown) D^T p
   ScalarField answer_;      // (unknown) C D^T p
 };

@@ -9,6 +9,7 @@ namespace greenwater {
 /// The pressure system over K in float. Rows of particles at the surface are left out: zero in and out.
 struct FloatSystem {
   int count = 0;
+  float per_K = 1;  // 1 / K [m^2]
   Rows rows;
   FloatField diagonal;  // (i) A_ii / K [-]; 0 where the surface is and beyond the last particle
   FloatField inverse;   // (i) 1 over that, and 0

@@ -325,10 +325,11 @@ void prolong_to_particles(const Seats& seats, const FloatSystem& system, const L
       });
 }
 
-// to = z + (r - A z) / diagonal; returns r . to.
+// to = (z + (r - A z) / diagonal) / K, as the matrix here is that over K; returns r . to.
 accum last_sweep(const FloatSystem& system, const FloatField& r, const FloatField& z, const ScalarField& to) {
   const auto rows = system.rows;
   const auto inverse = Read<FloatField>(system.inverse);
+  const float per_K = system.per_K;
   accum rz = 0;
   Kokkos::parallel_reduce(
       "greenwater::last_sweep", row_packs(system.count),
@@ -336,7 +337,7 @@ accum last_sweep(const FloatSystem& system, const FloatField& r, const FloatFiel
         const int i = pack * float_lanes;
         const FloatPack residual = load_lanes<FloatPack>(&r(i));
         const FloatPack swept =
-            load_lanes<FloatPack>(&inverse(i)) * (residual + row_product<FloatPack>(rows, z.data(), i));
+            per_K * load_lanes<FloatPack>(&inverse(i)) * (residual + row_product<FloatPack>(rows, z.data(), i));
         store_converted(&to(i), swept);
         sum += sum_lanes(residual * swept);
       },
@@ -390,6 +391,7 @@ void Multigrid::update(const PressureSystem& system) {
   expect(fluid.keep_weights);
   const int dim = fluid.particles.dim;
   system_.count = system.count();
+  system_.per_K = static_cast<float>(1 / system.factor());
   system_.rows = fluid.rows.near;
   grid_ = fluid.grid.shape();
   first_ = fluid.grid.first();

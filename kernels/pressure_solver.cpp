@@ -5,6 +5,7 @@
 
 #include "kernels/blas.hpp"
 #include "kernels/multigrid.hpp"
+#include "kernels/preconditioner_with_term.hpp"
 
 namespace greenwater {
 namespace {
@@ -48,7 +49,8 @@ CgOptions shortened(CgOptions options, int most) {
 class WithMultigrid : public PressureSolver {
  public:
   explicit WithMultigrid(const SolverOptions& options)
-      : first_way_(std::make_unique<Multigrid>(), shortened(options.cg, options.most_multigrid_iterations)),
+      : first_way_(make_preconditioner_with_term(std::make_unique<Multigrid>()),
+                   shortened(options.cg, options.most_multigrid_iterations)),
         last_resort_(make_jacobi(), options.cg),
         raise_(options.raise) {}
 
