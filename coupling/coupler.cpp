@@ -127,7 +127,8 @@ void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
       put(one.answer.matrix().row(row), scale, &C[(one.first_unknown + row) * unknowns_ + one.first_unknown]);
     for (Eigen::Index k = 0; k < one.answer.leading().rows(); ++k) {
       leading.resize(leading.size() + unknowns_, 0);
-      put(one.answer.leading().row(k), std::sqrt(scale), leading.data() + leading.size() - unknowns_ + one.first_unknown);
+      put(one.answer.leading().row(k), std::sqrt(scale),
+          leading.data() + leading.size() - unknowns_ + one.first_unknown);
     }
   }
   term_.set_answer(C, leading);

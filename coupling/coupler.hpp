@@ -78,14 +78,14 @@ class Coupler {
 
     ElasticBody body;
     int first_unknown = 0;
-    Eigen::VectorXd placed;                  // displacement of the corners where the walls stand [m]
-    Eigen::VectorXd base;                    // speeds in the right side of the solve [m/s]
-    Eigen::VectorXd speed;                   // of the walls in this step [m/s]
-    Eigen::VectorXd before;                  // in the last one
-    Eigen::VectorXd load;                    // on the corners
-    Eigen::VectorXd applied;                 // that under which the structure has gone through this step
-    StructureAnswer answer;                  // C
-    Eigen::VectorXd mode;  // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
+    Eigen::VectorXd placed;   // displacement of the corners where the walls stand [m]
+    Eigen::VectorXd base;     // speeds in the right side of the solve [m/s]
+    Eigen::VectorXd speed;    // of the walls in this step [m/s]
+    Eigen::VectorXd before;   // in the last one
+    Eigen::VectorXd load;     // on the corners
+    Eigen::VectorXd applied;  // that under which the structure has gone through this step
+    StructureAnswer answer;   // C
+    Eigen::VectorXd mode;     // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
     double added_mass = std::numeric_limits<double>::quiet_NaN();  // over the structure's
     March::State start;                                            // of this step
     March::State foreseen;                                         // at its end, under the load of the last one

@@ -64,7 +64,8 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto drive = drive_of<Dim>(fluid);
   const real rho = fluid.rho, per_n0 = 1 / fluid.gradient.reference.n0;
-  const real touching = static_cast<real>(1e-12 * fluid.spacing * fluid.spacing);
+  const real l0 = static_cast<real>(fluid.spacing), touching = real(1e-12) * l0 * l0;
+  const real nearest2 = nearest_quotient * nearest_quotient * l0 * l0;
   const auto correction = Read<VectorField>(survey.correction), surface_point = Read<VectorField>(survey.surface_point);
   const bool smooths = rates.inside > 0 || rates.at_surface > 0;
   const bool shifts = survey.shift.extent(0) > 0;
@@ -82,7 +83,7 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
         near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
-          const Pack slope = (gather_pack(p, j) - pi) * weight * inverse(larger(r2, all_lanes<Pack>(touching)));
+          const Pack slope = (gather_pack(p, j) - pi) * weight * inverse(larger(r2, all_lanes<Pack>(nearest2)));
           sum = along(sum, slope, r);
           if (smooths) smoother.add(j, r, weight);
           if (shifts) straightener.add(j, weight);
@@ -91,7 +92,7 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
           const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, x, j);
-          sum = along(sum, (pj - pi) * weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
+          sum = along(sum, (pj - pi) * weight * inverse(larger(r2, all_lanes<Pack>(nearest2))), r);
         });
         sum = along(sum, -pi, load_pack<Dim>(surface_point, i));
         Symmetric<Dim, Pack> C;

@@ -50,8 +50,8 @@ class AddedTerm {
   IndexField particle_;     // (touched)
   ScalarField C_;           // (row, column)
   std::vector<real> leading_;
-  ScalarField felt_;        // (unknown) D^T p
-  ScalarField answer_;      // (unknown) C D^T p
+  ScalarField felt_;    // (unknown) D^T p
+  ScalarField answer_;  // (unknown) C D^T p
 };
 
 }  // namespace greenwater

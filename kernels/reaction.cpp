@@ -14,7 +14,7 @@ struct Pusher {
   Weight w;
   Read<VectorField> correction;
   Read<FlagField> fixed;
-  coord touching, scale;
+  coord touching, nearest2, scale;
   int body;
 
   // Calls f(face, place, force per pressure) for every wall of the body on the path of every image of particle i.
@@ -39,7 +39,8 @@ struct Pusher {
       image.for_each_wall([&](const Panel& wall, const Vec<Dim, coord>& place) {
         const auto n = Sight<Dim>::as_vec(wall.normal);
         const coord along_n = dot(pull, n);
-        if (wall.body == body) f(wall.face, place, along(Vec<Dim, coord>{}, scale * weight / r2 * along_n, n));
+        if (wall.body == body)
+          f(wall.face, place, along(Vec<Dim, coord>{}, scale * weight / larger(r2, nearest2) * along_n, n));
         pull = along(pull, -2 * along_n, n);
       });
     }
@@ -54,6 +55,7 @@ Pusher<Dim> pusher_of(const Fluid& fluid, const Survey& survey, int body) {
           survey.divergence_correction,
           survey.fixed,
           1e-12 * fluid.spacing * fluid.spacing,
+          std::pow(nearest_quotient * fluid.spacing, 2),
           2 * std::pow(fluid.spacing, Dim) / fluid.gradient.reference.n0,
           body};
 }

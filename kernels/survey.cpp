@@ -75,7 +75,7 @@ struct Surveyor {
   ShiftFunction shift;
   LatticeTable table;
   Survey out;
-  real n0, l0, touching, K, per_dt, drift, step, longest, g[3];
+  real n0, l0, touching, nearest2, K, per_dt, drift, step, longest, g[3];
 
   KOKKOS_INLINE_FUNCTION Sums<Dim> sums(int i) const {
     Sums<Dim> sum;
@@ -85,7 +85,7 @@ struct Surveyor {
       const auto du = difference(image.velocity(gather_pack<Dim>(u, j)), ui);
       const Pack r2 = dot(r, r);
       const Pack weight = zero_unless(r2 > touching, image.weight(w, r2)) * per_n0;
-      const Pack per_r2 = weight * inverse(larger(r2, all_lanes<Pack>(touching)));
+      const Pack per_r2 = weight * inverse(larger(r2, all_lanes<Pack>(nearest2)));
       sum.S = along(sum.S, weight, r);
       sum.M.add_square(per_r2, r);
       for (int d = 0; d < Dim; ++d)
@@ -197,6 +197,7 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
                          lattice.n0,
                          l0,
                          real(1e-12) * l0 * l0,
+                         nearest_quotient * nearest_quotient * l0 * l0,
                          2 * Dim / (lattice.lambda * lattice.n0),
                          rho / dt,
                          rho * (options.drift_speed / l0) * (options.drift_speed / l0),

@@ -51,7 +51,22 @@ std::pair<coord, coord> part_on(const WallPanels& made, const Panel& panel, cons
   return any ? std::pair{low, high} : std::pair<coord, coord>{1, 0};
 }
 
+// Of two triangles of one surface that bends: their common side, if they have one. Where they only share a corner, nearly in
+// one plane, their other sides come closer than any tolerance, and are no edge.
+bool find_common_side(const WallPanels& made, const Panel& f, const Panel& g, coord tolerance, Edge& edge) {
+  const Piece &one = made.pieces[f.first_piece], &other = made.pieces[g.first_piece];
+  std::vector<Vector> shared;
+  for (int e = 0; e < 3; ++e)
+    for (int k = 0; k < 3; ++k)
+      if ((corner(one, e) - corner(other, k)).norm() < tolerance) shared.push_back(corner(one, e));
+  if (shared.size() != 2) return false;
+  const Vector along = shared[1] - shared[0];
+  edge = {shared[0], along.normalized(), 0, along.norm()};
+  return true;
+}
+
 bool find_edge_3d(const WallPanels& made, const Panel& f, const Panel& g, coord tolerance, Edge& edge) {
+  if (f.bends && g.bends && f.body == g.body) return find_common_side(made, f, g, tolerance, edge);
   bool found = false;
   for (const auto& [one, other] : {std::pair{&f, &g}, std::pair{&g, &f}})
     for (int k = one->first_piece; k < one->last_piece; ++k)

@@ -29,6 +29,11 @@ struct Weight {
   }
 };
 
+/// A pair that is nearer than this counts in difference quotients as if it were so far apart [x spacing]: what one pair says
+/// of a gradient, f_ij r_ij / r_ij^2, stays bounded, also for a particle that lies on a wall and its image. The matrix that
+/// corrects the gradient has it too, so linear fields stay exact.
+constexpr real nearest_quotient = real(0.2);
+
 /// Sums over the regular lattice.
 struct Reference {
   real n0 = 0;      // n^0       sum of w [-]

@@ -51,3 +51,18 @@ def peaks(run):
         "tip_time": when_tip,
         "tip": tip,
     }
+
+
+def costs(run):
+    """Wall time of a run's steps [s], and the shares of structures, coupling (loads, walls that bend, exchange) and fluid."""
+    seconds = {}
+    with open(f"{run}/run.log") as file:
+        for line in file:
+            words = line.split()
+            if len(words) == 4 and words[0][0].islower() and words[1].replace(".", "").isdigit():
+                seconds[words[0]] = float(words[1])
+    whole = sum(seconds.values())
+    structures = seconds.get("structures", 0)
+    coupling = sum(seconds.get(name, 0) for name in ("coupling", "exchange", "moving_walls", "added_mass"))
+    return {"seconds": whole, "structures": structures / whole, "coupling": coupling / whole,
+            "fluid": 1 - (structures + coupling) / whole}

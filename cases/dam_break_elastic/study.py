@@ -61,11 +61,15 @@ def table(rows):
     return "\n".join(lines)
 
 
-def in_words(run, p, end):
+def in_words(run, p, end, tells_costs):
     """What a reader has to know of a run beside its figures."""
-    from peaks import history
+    from peaks import costs, history
 
     words = []
+    if tells_costs:
+        c = costs(run)
+        words.append(f"{c['seconds']:.0f} s: fluid {100 * c['fluid']:.0f}, structure {100 * c['structures']:.0f}, "
+                     f"coupling {100 * c['coupling']:.0f} %")
     lost = history(run)["lost"][-1]
     if lost > 0:
         words.append(f"{lost:.0f} particles lost")
@@ -74,7 +78,7 @@ def in_words(run, p, end):
     return ", ".join(words)
 
 
-def carry_out(runs, plan, end):
+def carry_out(runs, plan, end, tells_costs):
     """Rows of the table, and the runs by name."""
     from peaks import peaks
     from runs import Run, RunFailed
@@ -88,7 +92,7 @@ def carry_out(runs, plan, end):
             failed = failed or not may_fail
         done[name] = run
         try:
-            note = note or in_words(run.folder, peaks(run.folder), end)
+            note = note or in_words(run.folder, peaks(run.folder), end, tells_costs)
             rows.append(row_of(title, run.folder, note, peaks))
         except (OSError, IndexError):
             rows.append(row_of(title, None, note, peaks))
@@ -108,10 +112,10 @@ def main():
 
     runs = Runs(options.program, HERE, options.keep, "full", "default")
     failed = False
-    for part, plan, end in (("large", LARGE, 0.5), ("knobs", KNOBS, 0.36)):
+    for part, plan, end, tells_costs in (("large", LARGE, 0.5, True), ("knobs", KNOBS, 0.36, False)):
         if options.only not in (None, part):
             continue
-        rows, done, broken = carry_out(runs, plan, end)
+        rows, done, broken = carry_out(runs, plan, end, tells_costs)
         failed = failed or broken
         print(table(rows), "\n")
         if options.write:
