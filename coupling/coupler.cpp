@@ -234,9 +234,23 @@ bool Coupler::answer_of_whole_step(Fluid& fluid, double dt) {
   return again;
 }
 
+/// What has diverged ends here, before walls are made of it.
+void Coupler::check_ways(const Fluid& fluid, double dt) const {
+  constexpr double far = 100;  // x spacing
+  const char* cure = options_.way == CouplingWay::staggered ? "coupling.scheme = \"default\" or \"aitken\""
+                                                            : "a shorter mps.time_step";
+  for (const Coupled& one : bodies_) {
+    const double way = dt * one.speed.lpNorm<Eigen::Infinity>();
+    require<NumericsError>(way <= far * fluid.spacing, "t = ", fluid.time, " s: \"",
+                           fluid.faces.bodies[one.motion.body].name, "\" moves ", way,
+                           " m in one step of the fluid: it does not march soundly with it -> ", cure);
+  }
+}
+
 void Coupler::place_walls(Fluid& fluid, double dt) {
   if (!any()) return;
   Region region("moving_walls");
+  check_ways(fluid, dt);
   const int dim = fluid.faces.dim;
   for (const Coupled& one : bodies_) {
     const auto& corners = one.body.surface.corner_of_face();
@@ -251,7 +265,12 @@ void Coupler::place_walls(Fluid& fluid, double dt) {
           point.acceleration[d] = acceleration[i];
         }
   }
-  make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), fluid.spacing);
+  try {
+    make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), fluid.spacing);
+  } catch (const CaseError& error) {  // nobody's input any more
+    throw NumericsError(
+        text_of("t = ", fluid.time, " s: a structure has come to where walls cannot be: ", error.what()));
+  }
 }
 
 void Coupler::finish(const Fluid& fluid, double dt) {

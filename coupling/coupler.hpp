@@ -47,7 +47,8 @@ class Coupler {
   /// from its start, with walls that place_walls() moves anew.
   bool answer_of_whole_step(Fluid& fluid, double dt);
 
-  /// Walls go to where they are at t + dt, with the velocity with which the fluid has seen them.
+  /// Walls go to where they are at t + dt, with the velocity with which the fluid has seen them. Throws NumericsError when
+  /// a structure's march has diverged, or it has folded so that walls cannot be there.
   void place_walls(Fluid& fluid, double dt);
   /// The step is over.
   void finish(const Fluid& fluid, double dt);
@@ -98,6 +99,7 @@ class Coupler {
   void march(Coupled& one, const Eigen::VectorXd& load, double dt);
   Eigen::VectorXd acceleration_of(const Coupled& one, double dt) const;
   void give_speeds(Fluid& fluid, Coupled& one, double dt);
+  void check_ways(const Fluid& fluid, double dt) const;
   void read_loads(const Fluid& fluid, const PressureSystem* system);
   void renew_answers(double dt);
   void hand_over_answers(const Fluid& fluid, double dt);

@@ -20,14 +20,20 @@ Eigen::MatrixXd leading_of(const Eigen::MatrixXd& C) {
   return leading;
 }
 
+double largest_change(const std::vector<Eigen::MatrixXd>& from, const std::vector<Eigen::MatrixXd>& to) {
+  double most = 0;
+  for (std::size_t c = 0; c < from.size(); ++c) most = std::max(most, (from[c] - to[c]).cwiseAbs().maxCoeff());
+  return most;
+}
+
 }  // namespace
 
-StructureAnswer::Answer StructureAnswer::turned(Answer answer, const Eigen::VectorXd& turn) {
-  for (Eigen::Index c = 0; c < turn.size(); ++c) {
-    const Eigen::Matrix2d by = Eigen::Rotation2Dd(turn[c]).toRotationMatrix();
-    answer.matrix.middleRows<2>(2 * c) = (by * answer.matrix.middleRows<2>(2 * c)).eval();
-    answer.matrix.middleCols<2>(2 * c) = (answer.matrix.middleCols<2>(2 * c) * by.transpose()).eval();
-    answer.leading.middleCols<2>(2 * c) = (answer.leading.middleCols<2>(2 * c) * by.transpose()).eval();
+StructureAnswer::Answer StructureAnswer::turned(Answer answer, const Turns& turns) {
+  for (std::size_t c = 0; c < turns.size(); ++c) {
+    const Eigen::Index size = turns[c].rows(), from = size * c;
+    answer.matrix.middleRows(from, size) = (turns[c] * answer.matrix.middleRows(from, size)).eval();
+    answer.matrix.middleCols(from, size) = (answer.matrix.middleCols(from, size) * turns[c].transpose()).eval();
+    answer.leading.middleCols(from, size) = (answer.leading.middleCols(from, size) * turns[c].transpose()).eval();
   }
   return answer;
 }
@@ -42,15 +48,14 @@ bool StructureAnswer::renew(const ElasticBody& body, const Eigen::VectorXd& disp
                       held_load_answer(*body.solid, *body.supports, patterns, body.options, substeps(body, dt));
     at_rest_.leading = leading_of(at_rest_.matrix);
   }
-  const bool turns = body.surface.fluid_dim() == 2 && !body.solid->linear();
-  if (!turns) {
+  if (body.solid->linear()) {
     if (anew) now_ = at_rest_;
     return anew;
   }
-  const Eigen::VectorXd turn = body.surface.turn_of_corners(displaced);
-  if (!anew && (turn - turn_).lpNorm<Eigen::Infinity>() < far) return false;
-  turn_ = turn;
-  now_ = turned(at_rest_, turn);
+  Turns turns = body.surface.turn_of_corners(displaced);
+  if (!anew && largest_change(turns, turns_) < far) return false;
+  turns_ = std::move(turns);
+  now_ = turned(at_rest_, turns_);
   return true;
 }
 

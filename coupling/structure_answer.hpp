@@ -1,6 +1,6 @@
 #pragma once
 // C: with what speeds the corners of a structure answer to forces on them that are held over a step of the fluid. It is that
-// of the substeps themselves, about the shape at rest, and in a 2-D fluid it turns with the surface.
+// of the substeps themselves, about the shape at rest, and it turns with the surface.
 
 #include "coupling/elastic_body.hpp"
 
@@ -22,11 +22,12 @@ class StructureAnswer {
   struct Answer {
     Eigen::MatrixXd matrix, leading;
   };
-  static Answer turned(Answer answer, const Eigen::VectorXd& turn);
+  using Turns = std::vector<Eigen::MatrixXd>;  // of the corners
+  static Answer turned(Answer answer, const Turns& turns);
 
   double dt_ = 0;  // of the step that it was made for [s]
   Answer at_rest_, now_;
-  Eigen::VectorXd turn_;  // of the corners [rad]
+  Turns turns_;
 };
 
 }  // namespace greenwater

@@ -103,6 +103,46 @@ std::vector<double> shares(const SolidMesh& mesh, std::vector<int>& nodes) {
   return share;
 }
 
+// Axes that go with a face: along its first side, and out of it.
+template <int Dim>
+Eigen::Matrix<double, Dim, Dim> frame_of(const std::array<Eigen::Matrix<double, Dim, 1>, Dim>& corner) {
+  Eigen::Matrix<double, Dim, Dim> frame;
+  const Eigen::Matrix<double, Dim, 1> along = (corner[1] - corner[0]).normalized();
+  frame.col(0) = along;
+  if constexpr (Dim == 2) {
+    frame.col(1) << -along[1], along[0];
+  } else {
+    const Eigen::Vector3d out = along.cross(corner[2] - corner[0]).normalized();
+    frame.col(1) = out;
+    frame.col(2) = along.cross(out);
+  }
+  return frame;
+}
+
+template <int Dim>
+std::vector<Eigen::MatrixXd> turns_of(const std::vector<std::array<double, 3>>& rest,
+                                      const std::vector<std::array<int, 3>>& faces,
+                                      const Eigen::VectorXd& displacement) {
+  using Point = Eigen::Matrix<double, Dim, 1>;
+  using Turn = Eigen::Matrix<double, Dim, Dim>;
+  std::vector<Turn> sum(rest.size(), Turn::Zero());
+  for (const auto& face : faces) {
+    std::array<Point, Dim> still, moved;
+    for (int e = 0; e < Dim; ++e) {
+      still[e] = Eigen::Map<const Point>(rest[face[e]].data());
+      moved[e] = still[e] + displacement.segment<Dim>(Dim * face[e]);
+    }
+    const Turn turn = frame_of<Dim>(moved) * frame_of<Dim>(still).transpose();
+    for (int e = 0; e < Dim; ++e) sum[face[e]] += turn;
+  }
+  std::vector<Eigen::MatrixXd> turns;
+  for (const Turn& all : sum) {
+    const Eigen::JacobiSVD<Turn> parts(all, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    turns.push_back(parts.matrixU() * parts.matrixV().transpose());
+  }
+  return turns;
+}
+
 }  // namespace
 
 WetSurface::WetSurface(const SolidMesh& mesh, const std::vector<Facet>& facets, int fluid_dim, double depth)
@@ -143,20 +183,8 @@ WetSurface::WetSurface(const SolidMesh& mesh, const std::vector<Facet>& facets, 
   mean_.setFromTriplets(entries.begin(), entries.end());
 }
 
-Eigen::VectorXd WetSurface::turn_of_corners(const Eigen::VectorXd& displacement) const {
-  expect(fluid_dim_ == 2);
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(corners()), faces = sum;
-  for (const auto& face : faces_) {
-    const int a = face[0], b = face[1];
-    const Eigen::Vector2d rest(rest_[b][0] - rest_[a][0], rest_[b][1] - rest_[a][1]);
-    const Eigen::Vector2d now = rest + displacement.segment<2>(2 * b) - displacement.segment<2>(2 * a);
-    const double turn = std::atan2(rest[0] * now[1] - rest[1] * now[0], rest.dot(now));
-    for (const int corner : {a, b}) {
-      sum[corner] += turn;
-      ++faces[corner];
-    }
-  }
-  return sum.cwiseQuotient(faces);
+std::vector<Eigen::MatrixXd> WetSurface::turn_of_corners(const Eigen::VectorXd& displacement) const {
+  return fluid_dim_ == 2 ? turns_of<2>(rest_, faces_, displacement) : turns_of<3>(rest_, faces_, displacement);
 }
 
 std::vector<WallFace> WetSurface::faces(int body) const {

@@ -2,6 +2,7 @@
 // The wet surface of a structure as walls of the fluid: where its corners are, how they move, and what the forces on them
 // are on the nodes. Forces go back the way displacements came, so that they do the same work on either side.
 
+#include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <vector>
 
@@ -39,9 +40,9 @@ class WetSurface {
   Eigen::VectorXd on_nodes(const Eigen::VectorXd& on_corners) const {
     return depth_ * (mean_.transpose() * on_corners);
   }
-  /// By which angle the surface of a 2-D fluid's structure has turned at each corner, anti-clockwise [rad], from the corners'
-  /// displacements: the mean of the faces that meet there.
-  Eigen::VectorXd turn_of_corners(const Eigen::VectorXd& displacement) const;
+  /// How the surface has turned at each corner, as a rotation (fluid_dim x fluid_dim), from the corners' displacements: the
+  /// one nearest to the mean of the faces that meet there.
+  std::vector<Eigen::MatrixXd> turn_of_corners(const Eigen::VectorXd& displacement) const;
   /// The matrix of at_corners(): (fluid_dim corners x unknowns).
   const Eigen::SparseMatrix<double>& mean() const { return mean_; }
 

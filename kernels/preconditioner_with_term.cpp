@@ -72,6 +72,7 @@ class WithTerm : public Preconditioner {
     if (room_ < particles || Z_.extent(0) < directions_ * room_) {
       room_ = std::max(room_, particles);
       Z_ = uncleared<ScalarField>("greenwater::added_directions", directions_ * room_);
+      w_ = uncleared<ScalarField>("greenwater::added_direction", room_);
     }
     if (felt_.extent(0) == static_cast<std::size_t>(unknowns_) &&
         wanted_.extent(0) == static_cast<std::size_t>(directions_))
@@ -86,13 +87,12 @@ class WithTerm : public Preconditioner {
   void make_directions(const FlagField& fixed) {
     const Directions leading = Eigen::Map<const Directions>(term_->leading().data(), directions_, unknowns_);
     upload(leading_, leading);
-    const ScalarField w("greenwater::added_direction", room_);
     Directions felt(unknowns_, directions_);  // D^T Z
     for (int k = 0; k < directions_; ++k) {
       const ScalarField Z = part(Z_, k, room_);
-      Kokkos::deep_copy(w, real(0));
-      term_->add_source(fixed, 1, part(leading_, k, unknowns_), w);
-      inner_->apply(w, Z);
+      Kokkos::deep_copy(w_, real(0));
+      term_->add_source(fixed, 1, part(leading_, k, unknowns_), w_);
+      inner_->apply(w_, Z);
       term_->feel(Z, felt_);
       const auto heard = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), felt_);
       for (int u = 0; u < unknowns_; ++u) felt(u, k) = heard(u);
@@ -110,6 +110,7 @@ class WithTerm : public Preconditioner {
   int count_ = 0, unknowns_ = 0, directions_ = 0;
   std::size_t room_ = 0;  // of a direction
   ScalarField Z_;         // (direction, i)
+  ScalarField w_;         // (i) a column of W
   ScalarField leading_;   // (direction, unknown)
   ScalarField G_;         // (direction, unknown)
   ScalarField felt_, wanted_;

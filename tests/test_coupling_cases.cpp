@@ -127,6 +127,17 @@ TEST_CASE("the paper's scene at 4 mm: peaks come when the paper says, and nothin
   CHECK(std::fabs(simulation.run_facts().history.back()) < 1e300);
 }
 
+TEST_CASE("a staggered march that diverges ends with its name and the cure", "[stability][coupling]") {
+  FluidSimulation simulation(scene_of("dam_break_elastic/quick.toml", {"coupling.scheme=staggered"}));
+  std::string told;
+  try {
+    while (simulation.time() < 0.3) simulation.step();
+  } catch (const NumericsError& error) {
+    told = error.what();
+  }
+  CHECK_THAT(told, Catch::Contains("\"plate\" moves") && Catch::Contains("\"aitken\""));
+}
+
 TEST_CASE("Poli-150 as an elastic plate is Poli-150 as a wall", "[validation][coupling][full]") {
   const std::vector<std::string> fine{"mps.spacing=0.002", "mps.time_step=0.0002", "structure.0.thickness=0.015"};
   const Scene elastic = scene_of("dam_break_elastic/quick.toml", fine);

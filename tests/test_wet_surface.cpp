@@ -104,6 +104,25 @@ TEST_CASE("a block of hexahedra in a 3-D fluid is two triangles a side, facing o
   }
 }
 
+TEST_CASE("a surface that turns as a whole has turned so at every corner", "[unit][coupling]") {
+  for (const int dim : {2, 3}) {
+    const SolidMesh mesh = plate(2);
+    const WetSurface surface(mesh, dim == 2 ? outer_facets_without(mesh, foot_and_sides) : outer_facets(mesh), dim);
+    const Eigen::Matrix3d turn3 =
+        Eigen::AngleAxisd(0.7, dim == 2 ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, -2, 0.5).normalized())
+            .toRotationMatrix();
+    const Eigen::MatrixXd turn = turn3.topLeftCorner(dim, dim);
+    Vector moved(dim * surface.corners());
+    for (int c = 0; c < surface.corners(); ++c) {
+      const Eigen::VectorXd x = Eigen::Map<const Eigen::VectorXd>(surface.rest()[c].data(), dim);
+      moved.segment(dim * c, dim) = turn * x - x;
+    }
+    const auto turns = surface.turn_of_corners(moved);
+    REQUIRE(static_cast<int>(turns.size()) == surface.corners());
+    for (const Eigen::MatrixXd& found : turns) CHECK((found - turn).cwiseAbs().maxCoeff() < 1e-12);
+  }
+}
+
 TEST_CASE("what cannot be a wet surface is refused", "[unit][coupling][bad]") {
   const SolidMesh mesh = plate(1);
   CHECK_THROWS_WITH(WetSurface(mesh, {}, 2), Catch::Contains("no wet surface"));

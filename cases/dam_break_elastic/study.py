@@ -55,6 +55,12 @@ def row_of(title, run, note, peaks):
             f"{p['raw_load']:.0f}", f"{p['tip_time']:.4f}", f"{1e3 * p['tip']:.3f}", note]
 
 
+def printed_row():
+    from peaks import PAPER_DISPLACEMENT, PAPER_LOAD
+
+    return ["the paper", "", f"{PAPER_LOAD:.3f}", "", "", "", f"{PAPER_DISPLACEMENT:.3f}", "", ""]
+
+
 def table(rows):
     lines = ["| " + " | ".join(row) + " |" for row in [HEAD, *rows]]
     lines.insert(1, "|---|" + "---:|" * 7 + "---|")
@@ -116,6 +122,8 @@ def main():
         if options.only not in (None, part):
             continue
         rows, done, broken = carry_out(runs, plan, end, tells_costs)
+        if part == "large":
+            rows.append(printed_row())
         failed = failed or broken
         print(table(rows), "\n")
         if options.write:
