@@ -7,7 +7,7 @@ from figures import Figure, below, near
 
 TITLE = "an elastic beam in a rolling tank of oil"
 ANGLE, PERIOD, HEIGHT, GROWTH = math.radians(3.97), 1.215, 0.1148, 0.4
-SIZES = {"full": 5, "small": 0.35}  # periods
+SIZES = {"full": 12, "small": 0.35}  # periods
 # Up to the first crest of the tip both ways have to agree; the small size ends before that, and only tells.
 AGREE = 0.02
 FREQUENCY_OFF = 0.01
@@ -40,8 +40,8 @@ def first_crest(time, tip):
 
 
 def strongest_frequency(time, tip):
-    """Of the last periods, by the best fit of a sine."""
-    part = time > time[-1] - math.floor(time[-1] / PERIOD - 1) * PERIOD
+    """Of the second half of the run, by the best fit of a sine: in the first periods the tank is still starting."""
+    part = time > time[-1] / 2
     best = None
     for frequency in numpy.linspace(0.8, 1.2, 401) / PERIOD:
         phase = 2 * math.pi * frequency * time[part]
