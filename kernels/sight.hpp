@@ -74,6 +74,7 @@ struct Sight {
     if (!(share > 0)) return 0;
     Point from_a, from_b;
     if (!first_bounce(m, a, b, from_a, spared) || !open(a, from_a, spared)) return 0;
+    if (m.length == 0 && outside_at_edge(m, a, b, from_a)) return 0;
     if (k < panels) return open(from_a, b, spared) ? static_cast<real>(share) : real(0);
     if (!first_bounce(mirror[m.reverse], b, a, from_b, spared)) return 0;
     return open(from_b, b, spared) && open(from_a, from_b, spared) ? static_cast<real>(share) : real(0);
@@ -235,6 +236,21 @@ struct Sight {
     at = greenwater::along(a, least, line);
     if (on_panel(panel[wall], at) || at_edge(wall, a, b, at)) return true;
     return m.length != 1 && goes_on(panel[wall], at, spared);
+  }
+
+  // A path that leads to the very edge of a right-angled corner, as that to one's own image does, comes there from outside as
+  // well as from inside. Inside is where all walls go on from there.
+  KOKKOS_INLINE_FUNCTION bool outside_at_edge(const Mirror& m, const Point& a, const Point& b, const Point& at) const {
+    constexpr coord onward = 0.1;
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e)
+      if (fabs(side(panel[m.also[e]], at)) > tolerance) return false;
+    for (int e = 0; e < 3 && m.also[e] >= 0; ++e) {
+      const Panel& w = panel[m.also[e]];
+      const auto foot = greenwater::along(a, -side(w, a), as_vec(w.normal));
+      auto further = greenwater::along(at, onward, difference(foot, at));
+      if (!on_panel(w, further) && !at_edge(m.also[e], a, b, further)) return true;
+    }
+    return false;
   }
 
   // A point of the plane of a wall that bends, beyond its end: is another panel of that wall there, nearly in the plane?

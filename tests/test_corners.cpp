@@ -182,6 +182,34 @@ TEST_CASE("n = n0 within 1 % in corners cut out of a lattice", "[validation][cor
   }
 }
 
+// Water round the foot and the tip of a plate, and beyond the tip. A plate that leans by next to nothing has joints at its
+// corners in place of one image that is right where they are at right angles.
+TEST_CASE("right-angled corners are what corners nearly so are, inside and outside", "[unit][corners]") {
+  constexpr coord l0 = 0.1;
+  for (const int dim : {2, 3}) {
+    const auto number_density = [&](coord lean) {
+      const WallFaces flat = walls_of({segment(-1, 0, 1, 0), segment(0, 0, lean, 0.8),
+                                       segment(lean, 0.8, 0.32 + lean, 0.8), segment(0.32 + lean, 0.8, 0.32, 0)});
+      FluidOptions options;
+      options.dim = dim;
+      options.spacing = l0;
+      options.radius = dim == 2 ? 3.1 : 2.1;
+      options.shift = 0;
+      Positions x;
+      for (int k = 0; k < (dim == 2 ? 1 : 5); ++k)
+        for (const auto& at : lattice(5, 12, l0, -0.5, 0, 0.1)) x.push_back({at[0], at[1], (k + 0.5) * l0});
+      const Fluid fluid = fluid_at(x, dim == 2 ? flat : drawn_up(flat, 0.5), options);
+      return by_id(fluid, fluid.particles.number_density);
+    };
+    const auto right = number_density(0), nearly = number_density(1e-6);
+    REQUIRE(right.size() == nearly.size());
+    for (std::size_t i = 0; i < right.size(); ++i) {
+      INFO(dim << "-D, particle " << i);
+      CHECK(right[i] == Approx(nearly[i]).epsilon(1e-4));
+    }
+  }
+}
+
 TEST_CASE("the matrix is symmetric and positive definite in corners of any angle", "[unit][corners]") {
   for (const double angle : {30.0, 60.0, 87.0, 93.0, 135.0, 175.0})
     for (const unsigned seed : {1u, 2u}) {
