@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "app/structure_simulation.hpp"
-#include "tests/case_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/program.hpp"
+#include "tests/structure_text.hpp"
 
 using namespace greenwater;
 using namespace greenwater::test;
@@ -43,15 +43,6 @@ divisions = [1, 10, 1]
 [output]
 every_time = 0.0005
 )";
-}
-
-std::string complaint_about(const std::string& text) {
-  try {
-    StructureSimulation simulation(scene_of_text(text));
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return {};
 }
 
 std::string replaced(std::string text, const std::string& before, const std::string& after) {

@@ -4,9 +4,9 @@
 
 #include "app/motion.hpp"
 #include "app/structure_simulation.hpp"
-#include "tests/case_text.hpp"
 #include "tests/catch.hpp"
 #include "tests/program.hpp"
+#include "tests/structure_text.hpp"
 
 using namespace greenwater;
 using namespace greenwater::test;
@@ -39,15 +39,6 @@ divisions = [1, 5]
 const std::string tank = "[geometry.tank]\ntype = \"box\"\nmin = [0.0, 0.0]\nmax = [1.0, 0.5]\n";
 const std::string rolls = "[geometry.tank.motion]\nrotation = \"20*t + 1000*t^2\"\nabout = [0.5, 0.1]\n";
 const std::string on_tank = "weight = false\n[[structure.support]]\npart = \"bottom\"\nwith = \"tank\"\n";
-
-std::string complaint_about(const std::string& text) {
-  try {
-    StructureSimulation simulation(scene_of_text(text));
-  } catch (const CaseError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 /// A block of quadrilaterals or hexahedra, 1 mm above the floor of the tank.
 std::string block(const std::string& divisions, const std::string& of_block, const std::string& more) {
