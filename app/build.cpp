@@ -62,7 +62,7 @@ void spread_under_lid(const Scene& scene, const WallFaces& walls, Fluid& fluid) 
 GridShape build_grid(const Scene& scene, const WallFaces& walls) {
   const MpsCase& mps = scene.mps;
   const double radius = mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
-  if (scene.has_domain) return make_grid(scene.dimension, scene.domain_min, scene.domain_max, radius);
+  if (scene.has_domain) return make_grid(scene.dimension, scene.domain_min, scene.domain_max, radius, scene.repeats);
   const auto [low, high] = scene_extent(scene, walls);
   double flight = 0;
   for (int d = 0; d < scene.dimension; ++d) flight = std::max(flight, high[d] - low[d]);
@@ -143,11 +143,12 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
 
 Effects build_effects(const Scene& scene) {
   Effects effects;
-  for (const ViscosityCase& c : scene.viscosity) effects.add(make_viscosity(static_cast<real>(c.kinematic)));
+  for (const ViscosityCase& c : scene.viscosity)
+    effects.add(make_viscosity({static_cast<real>(c.kinematic), scene.mps.scheme != "classic"}));
   for (const CollisionCase& c : scene.collision)
     effects.add(make_collision({static_cast<real>(c.distance), static_cast<real>(c.restitution), c.sweeps}));
   if (auto motion = build_motion(scene)) {
-    if (scene.mps.scheme == "default") effects.add(make_wall_speeds(motion));
+    if (scene.mps.scheme != "classic") effects.add(make_wall_speeds(motion));
     effects.add(make_moving_walls(std::move(motion)));
   }
   for (const BodyForceCase& c : scene.body_force) {
@@ -194,6 +195,7 @@ double reference_speed(const Scene& scene, const Fluid& fluid) {
 std::unique_ptr<Scheme> build_default(const Scene& scene, const Fluid& fluid) {
   const DefaultSchemeCase& parts = scene.mps.parts;
   DefaultOptions options;
+  options.fits = scene.mps.scheme == "high";
   options.solver = solver_options(scene.mps);
   options.reference_speed =
       static_cast<real>(parts.reference_speed > 0 ? parts.reference_speed : reference_speed(scene, fluid));
@@ -210,7 +212,7 @@ std::unique_ptr<Scheme> build_default(const Scene& scene, const Fluid& fluid) {
 
 std::unique_ptr<Scheme> build_scheme(const Scene& scene, const Fluid& fluid) {
   const MpsCase& mps = scene.mps;
-  if (mps.scheme == "default") return build_default(scene, fluid);
+  if (mps.scheme != "classic") return build_default(scene, fluid);
   ClassicOptions options;
   options.solver = solver_options(mps);
   options.pressure.diagonal_factor = static_cast<real>(mps.multiplication_coefficient);

@@ -232,6 +232,7 @@ std::vector<std::string> FluidSimulation::plan() const {
 std::vector<WallShape> FluidSimulation::wall_shapes() const {
   std::vector<WallShape> shapes;
   for (const WallFace& face : fluid_.faces.faces) {
+    if (face.repeated) continue;
     shapes.emplace_back();
     for (int e = 0; e < fluid_.faces.dim; ++e) shapes.back().push_back(face.corner[e].position);
   }

@@ -39,6 +39,9 @@ void read_domain(Section& root, Scene& scene) {
   scene.domain_min = corners.min;
   scene.domain_max = corners.max;
   scene.domain_place = section->place();
+  const Words axes = scene.dimension == 2 ? Words{"x", "y"} : Words{"x", "y", "z"};
+  for (const std::string& axis : section->choices("periodic", axes, Words{})) scene.repeats[axis.front() - 'x'] = true;
+  scene.repeats_place = section->place("periodic");
 }
 
 void read_water(Section& root, Scene& scene) {

@@ -2,6 +2,7 @@
 // The typed case: everything a run needs to know, SI units, every default filled in. Read from a case file by
 // read_scene(), the only place that knows the keys; turned into fields and kernels by build.cpp.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -122,7 +123,7 @@ struct PressureCase {
   std::string source = "density";  // density | divergence
 };
 
-struct DefaultSchemeCase {
+struct DefaultSchemeCase {     // and of scheme high
   double reference_speed = 0;  // [m/s]; 0: sqrt(|g| H) or the fastest start, whichever is more
   double drift = 0.3;          // x reference speed
   double shifting = 7;         // part of disorder undone while the bulk of the fluid goes one spacing
@@ -257,7 +258,8 @@ struct Scene {
   Point gravity{0, -9.81, 0};  // [m/s^2]; default in 3-D: 0, 0, -9.81
   bool has_domain = false;     // [domain] given: outside it particles are retired
   Point domain_min{}, domain_max{};
-  Place domain_place;
+  std::array<bool, 3> repeats{};  // the domain is a period along these axes
+  Place domain_place, repeats_place;
   std::vector<BoxCase> boxes;
   std::vector<PolylineCase> polylines;
   std::vector<PlateCase> plates;

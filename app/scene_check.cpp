@@ -9,6 +9,7 @@
 #include "app/motion.hpp"
 #include "app/plan.hpp"
 #include "app/scene_shape.hpp"
+#include "kernels/cell_grid.hpp"
 
 namespace greenwater {
 namespace {
@@ -248,6 +249,46 @@ void check_domain(const Check& check) {
              "the fluid reaches out of [domain]: particles there would be taken out at once; ", "enlarge the domain");
 }
 
+/// What a domain that repeats itself along an axis asks of all that is in it.
+void check_period(const Check& check, std::size_t d) {
+  const Scene& scene = check.scene;
+  const MpsCase& mps = scene.mps;
+  const Place& place = scene.repeats_place;
+  const double period = scene.domain_max[d] - scene.domain_min[d];
+  const double radius = mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
+  require_at(place, period > 1.001 * shortest_period * radius, "the domain repeats itself along ", axis_name[d],
+             " after ", period, " m, and a particle reaches ", radius, " m far: that must be more than ",
+             shortest_period, " times as much; take a longer domain or a smaller mps.spacing");
+  require_at(place, scene.structures.empty(),
+             "structures in a domain that repeats itself are not built; delete periodic");
+  const double wide = scene.fluid.max[d] - scene.fluid.min[d], cells = std::round(period / mps.spacing);
+  if (scene.fluid.inside.empty() && !scene.fluid.ball && wide > period - mps.spacing)
+    require_at(mps.spacing_place, std::fabs(cells * mps.spacing - period) < 1e-6 * mps.spacing,
+               "particles do not fit into the period of ", period, " m along ", axis_name[d],
+               ": there would be a gap or a crowd at its edge; take spacing = ", period / cells);
+  for (const Shape& shape : shapes_of(scene)) {
+    const double length = shape.bounds.max[d] - shape.bounds.min[d];
+    const GeometryCase& geometry = *shape.geometry;
+    require_at(geometry.place, length <= period + check.slack, '"', geometry.name, "\" is ", length, " m long in ",
+               axis_name[d], ", more than the domain, which repeats itself after ", period,
+               " m: walls go on by themselves; end it at the edges");
+    require_at(geometry.place, !geometry.motion || (!geometry.motion->rotation && !geometry.motion->rotation_table),
+               '"', geometry.name, "\" turns, and the domain repeats itself; let it only shift, or delete periodic");
+  }
+  for (const BoxCase& box : scene.boxes)
+    for (std::size_t end = 0; end < 2; ++end) {
+      const std::string side = box_sides(scene.dimension)[2 * d + end];
+      const bool open = std::find(box.open.begin(), box.open.end(), side) != box.open.end();
+      require_at(box.place, open || box.max[d] - box.min[d] < period - check.slack, "the ", side, " side of \"",
+                 box.name, "\" closes the domain where it repeats itself; open it: open = [\"", side, "\"]");
+    }
+}
+
+void check_periods(const Check& check) {
+  for (std::size_t d = 0; d < check.axes; ++d)
+    if (check.scene.repeats[d]) check_period(check, d);
+}
+
 /// Cells in which neighbours are looked for; of particles the plan takes care.
 void check_extent(const Check& check) {
   constexpr double most_cells = std::numeric_limits<int>::max() / 4;
@@ -287,6 +328,7 @@ void check_scene(const Scene& scene) {
   check_walls(scene);
   check_structures(check);
   check_domain(check);
+  check_periods(check);
   check_extent(check);
   check_time_step(check);
   check_velocity(check);

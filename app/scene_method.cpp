@@ -94,7 +94,9 @@ void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
   options.kernel = "standard";
   const double usual = dimension == 3 ? usual_radius_3d : options.radius_laplacian;
   set_radii(options, mps.number("radius", "x spacing", between(least_radius, most_radius), usual));
-  Section section = mps.table("default");
+  const bool high = options.scheme == "high";
+  Section section = mps.table(options.scheme);
+  refuse_keys(mps, {high ? "default" : "high"}, high ? "default" : "high", "delete it, or take that scheme");
   DefaultSchemeCase& parts = options.parts;
   parts.reference_speed = section.number("reference_speed", "m/s", at_least(0), parts.reference_speed);
   parts.drift = section.number("drift", "-", at_least(0), parts.drift);
@@ -107,7 +109,8 @@ void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
 
 void read_classic_scheme(Section& mps, int dimension, MpsCase& options) {
   constexpr double least_radius = 1.1;  // x spacing: neighbours at all
-  refuse_keys(mps, {"radius", "default"}, "default", "classic has a radius for each of its sums: radius_density, ...");
+  refuse_keys(mps, {"radius", "default", "high"}, "default",
+              "classic has a radius for each of its sums: radius_density, ...");
   if (dimension == 3) set_radii(options, usual_radius_3d);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
   options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);
@@ -127,7 +130,7 @@ void read_classic_scheme(Section& mps, int dimension, MpsCase& options) {
 
 void read_mps(Section mps, Scene& scene) {
   MpsCase& options = scene.mps;
-  options.scheme = mps.choice("scheme", {"default", "classic"}, options.scheme);
+  options.scheme = mps.choice("scheme", {"default", "high", "classic"}, options.scheme);
   options.spacing = mps.number("spacing", "m", positive, example(0.004));
   options.spacing_place = mps.place("spacing");
   options.expected_particles = mps.count("expected_particles", 0, options.expected_particles);

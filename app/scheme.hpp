@@ -46,6 +46,7 @@ struct ClassicOptions {
 std::unique_ptr<Scheme> make_classic(const ClassicOptions& options);
 
 struct DefaultOptions {
+  bool fits = false;  // derivatives by least squares, where they can be trusted: the scheme "high"
   SolverOptions solver;
   real reference_speed = 0;  // U of the flow [m/s]: that of its energy, not of a splash; 0: its bulk's in each step
   real drift = real(0.3);    // speed with which density errors are undone, x U
@@ -56,7 +57,8 @@ struct DefaultOptions {
   real separation = real(0.6);     // particles closer than this, x spacing, and approaching are held apart; 0: not
 };
 
-/// The scheme for all that is not the paper's: calm at rest, with tension, and without a row cut off at the surface.
+/// The scheme for all that is not the paper's: calm at rest, with tension, and without a row cut off at the surface. With fits
+/// it is the scheme "high".
 std::unique_ptr<Scheme> make_default(const DefaultOptions& options);
 
 /// Sorts the particles into the grid and builds their rows; returns how many left the domain. Needed once before the

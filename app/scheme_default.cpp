@@ -23,6 +23,7 @@ class Default : public Scheme {
     effects.run(Stage::wall_speeds, fluid, dt);
     coupler.foresee(fluid, dt);
     report.departed = settle_rows(fluid);
+    if (options_.fits) fit_neighbourhoods(fluid, table_of(fluid));
     clear_acceleration(fluid);
     effects.run(Stage::force, fluid, dt);
     kick(fluid, dt);
@@ -73,6 +74,8 @@ class Default : public Scheme {
   // Once, and again as long as structures say so.
   SolveReport solve_pressure(Fluid& fluid, Coupler& coupler, real dt) {
     pressure_.assemble(fluid, survey_.rhs, survey_.diagonal, survey_.fixed);
+    if (options_.fits) replace_rows(fluid);
+    if (survey_.closed) pressure_.close();
     if (options_.diagonal_factor > 1) pressure_.raise_diagonal(options_.diagonal_factor - 1);
     coupler.join(fluid, survey_, pressure_, dt);
     SolveReport report = solve(fluid);
@@ -83,6 +86,11 @@ class Default : public Scheme {
     }
     if (coupler.weighs()) coupler.weigh(fluid, pressure_, *solver_);
     return report;
+  }
+
+  void replace_rows(Fluid& fluid) {
+    weigh_rows(fluid, survey_);
+    pressure_.replace_rows(fluid.fits.weight, fluid.fits.diagonal);
   }
 
   SolveReport solve(Fluid& fluid) {

@@ -19,6 +19,7 @@ struct WallPoint {
 struct WallFace {
   std::array<WallPoint, 3> corner;  // 2-D: a segment from the first to the second
   int body = 0;                     // which named geometry it belongs to
+  bool repeated = false;            // it stands for one a period away, where space repeats itself
 };
 
 struct WallBody {

@@ -56,11 +56,11 @@ struct Straightener {
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> shift(int i) const { return difference(load_pack<Dim>(disorder, i), mean); }
 };
 
-template <int Dim>
+// fitted: with least squares, as far as a particle's share goes.
+template <int Dim, bool fitted>
 void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const VectorField& a) {
   const auto w = fluid.gradient.weight;
   const auto near = around_unmoved<Dim>(fluid, w);
-  const auto x = Read<CoordField>(fluid.particles.position);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto drive = drive_of<Dim>(fluid);
   const real rho = fluid.rho, per_n0 = 1 / fluid.gradient.reference.n0;
@@ -69,6 +69,7 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
   const auto correction = Read<VectorField>(survey.correction), surface_point = Read<VectorField>(survey.surface_point);
   const bool smooths = rates.inside > 0 || rates.at_surface > 0;
   const bool shifts = survey.shift.extent(0) > 0;
+  const Fits<Dim> fits(fluid.fits);
   const auto shift = survey.shift;
   const Straightener<Dim> crooked{survey.disorder, {}};
   const Smoother<Dim> idle{fluid.particles.velocity, survey.velocity_gradient, survey.surface, rates, {}, {}, {}, {}};
@@ -79,26 +80,32 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
         auto smoother = idle;
         if (smooths) smoother.start(i);
         auto straightener = crooked;
-        Vec<Dim, Pack> sum{};
+        Vec<Dim, Pack> sum{}, fitted_sum{};
+        Fit<Dim> fit;
+        if constexpr (fitted) fit = fits.of(i);
         near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
-          const Pack slope = (gather_pack(p, j) - pi) * weight * inverse(larger(r2, all_lanes<Pack>(nearest2)));
-          sum = along(sum, slope, r);
+          const Pack dp = gather_pack(p, j) - pi;
+          sum = along(sum, dp * weight * inverse(larger(r2, all_lanes<Pack>(nearest2))), r);
+          if constexpr (fitted) fitted_sum = along(fitted_sum, dp, fit.slope(r, image.share));
           if (smooths) smoother.add(j, r, weight);
           if (shifts) straightener.add(j, weight);
         });
         near.for_each_image(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;
-          const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, x, j);
-          sum = along(sum, (pj - pi) * weight * inverse(larger(r2, all_lanes<Pack>(nearest2))), r);
+          const Pack dp = gather_pack(p, j) + rho * image.pressure_offset(drive, j) - pi;
+          sum = along(sum, dp * weight * inverse(larger(r2, all_lanes<Pack>(nearest2))), r);
+          if constexpr (fitted) fitted_sum = along(fitted_sum, dp, fit.slope(r, image.share));
         });
         sum = along(sum, -pi, load_pack<Dim>(surface_point, i));
         Symmetric<Dim, Pack> C;
         for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) C.c[k] = load_lanes<Pack>(&correction(i, k));
         if (shifts) store_pack(shift, i, straightener.shift(i));
-        store_pack(a, i, along(smoother.sum, all_lanes<Pack>(-1 / rho), product(C, sum)));
+        auto grad = product(C, sum);
+        if constexpr (fitted) grad = along(grad, fit.share, difference(fitted_sum, grad));
+        store_pack(a, i, along(smoother.sum, all_lanes<Pack>(-1 / rho), grad));
       });
 }
 
@@ -108,7 +115,11 @@ void accelerate(Fluid& fluid, Survey& survey, const SmoothingOptions& smoothing,
   Region region("gradient");
   const Rates rates = rates_of(smoothing, static_cast<real>(fluid.spacing), dt);
   const VectorField a = fluid.particles.acceleration;
-  fluid.particles.dim == 2 ? accelerate_in<2>(fluid, survey, rates, a) : accelerate_in<3>(fluid, survey, rates, a);
+  const bool flat = fluid.particles.dim == 2;
+  if (fluid.fits.empty())
+    flat ? accelerate_in<2, false>(fluid, survey, rates, a) : accelerate_in<3, false>(fluid, survey, rates, a);
+  else
+    flat ? accelerate_in<2, true>(fluid, survey, rates, a) : accelerate_in<3, true>(fluid, survey, rates, a);
 }
 
 }  // namespace greenwater

@@ -28,6 +28,20 @@ int find_cells_in(const Particles& particles, const GridShape& grid, IndexField 
   return nowhere;
 }
 
+template <int Dim>
+void wrap_positions_in(const Particles& particles, const GridShape& grid) {
+  const auto x = particles.position;
+  Kokkos::parallel_for(
+      "greenwater::wrap_positions", Range(0, particles.count), KOKKOS_LAMBDA(const int i) {
+        for (int d = 0; d < Dim; ++d) {
+          const coord period = grid.period[d];
+          if (period == 0) continue;
+          const coord from = x(i, d) - grid.origin[d], rest = from - period * floor(from / period);
+          if (from < 0 || from >= period) x(i, d) = grid.origin[d] + (rest < period ? rest : coord(0));
+        }
+      });
+}
+
 void clear(const IndexField& field) {
   Kokkos::parallel_for(
       "greenwater::clear_cells", Range(0, static_cast<int>(field.extent(0))),
@@ -109,13 +123,16 @@ int value_at(const IndexField& field, int i) {
 
 }  // namespace
 
-GridShape make_grid(int dim, const std::array<coord, 3>& low, const std::array<coord, 3>& high, coord radius) {
+GridShape make_grid(int dim, const std::array<coord, 3>& low, const std::array<coord, 3>& high, coord radius,
+                    const std::array<bool, 3>& repeats) {
   GridShape grid;
   grid.cell = radius * (1 + 1e-6);
   double total = 1;
   for (int d = 0; d < dim; ++d) {
     grid.origin[d] = low[d];
-    const double along = std::ceil((high[d] - low[d]) / grid.cell) + 1;
+    if (repeats[d]) grid.period[d] = high[d] - low[d];
+    const double along = std::ceil((high[d] - low[d]) / grid.cell) + (repeats[d] ? 0 : 1);
+    expect(!repeats[d] || grid.period[d] >= shortest_period * grid.cell);
     total *= along;
     require<ResourceError>(total < std::numeric_limits<int>::max() / 4, "the domain needs more than ", total,
                            " cells of ", grid.cell, " m: make it smaller or the particle distance larger");
@@ -134,6 +151,8 @@ Departed CellGrid::sort(Particles& particles) {
     cell_ = uncleared<IndexField>("greenwater::cell_of_particle", particles.id.extent(0));
     order_ = uncleared<IndexField>("greenwater::cell_order", particles.id.extent(0));
   }
+  if (shape_.repeats())
+    particles.dim == 2 ? wrap_positions_in<2>(particles, shape_) : wrap_positions_in<3>(particles, shape_);
   clear(fill_);
   const int nowhere = particles.dim == 2 ? find_cells_in<2>(particles, shape_, cell_, fill_)
                                          : find_cells_in<3>(particles, shape_, cell_, fill_);

@@ -3,21 +3,10 @@
 #include <cmath>
 
 #include "kernels/blas.hpp"
+#include "kernels/pressure_vectors.hpp"
 
 namespace greenwater {
 namespace {
-
-void hold_surface(const FlagField& fixed, const ScalarField& p, int count) {
-  Kokkos::parallel_for(
-      "greenwater::hold_surface", Range(0, count), KOKKOS_LAMBDA(const int i) {
-        if (fixed(i)) p(i) = 0;
-      });
-}
-
-void clear(const ScalarField& p, int count) {
-  Kokkos::parallel_for(
-      "greenwater::clear_pressure", Range(0, count), KOKKOS_LAMBDA(const int i) { p(i) = 0; });
-}
 
 real largest(const ScalarField& diagonal, int count) {
   real most = 0;
@@ -73,7 +62,7 @@ SolveReport ConjugateGradient::solve(const PressureSystem& system, const Precond
   hold_surface(system.fixed(), p, count);
   const accum b_norm = std::sqrt(blas::dot(system.rhs(), system.rhs(), count));
   if (b_norm == 0) {
-    clear(p, count);
+    clear_pressure(p, count);
     return {};
   }
   system.apply(p, r_);

@@ -2,6 +2,7 @@
 // What kernels and effects are given: the particles, their walls and their neighbours.
 
 #include "core/particles.hpp"
+#include "kernels/least_squares.hpp"
 #include "kernels/mirror_wall.hpp"
 #include "kernels/neighbor_rows.hpp"
 #include "kernels/weight.hpp"
@@ -20,6 +21,7 @@ struct Fluid {
   MirrorWalls walls;            // ... and made of them, on the device
   CellGrid grid;                // the particles are in its order since the last sort
   NeighborRows rows;            // with the weight of the Laplacian beside each entry
+  LeastSquares fits;            // of the scheme "high"; else empty
   Kernel density;               // of n
   Kernel gradient;              // of grad p and div u
   Kernel laplacian;             // of the pressure operator and of viscosity

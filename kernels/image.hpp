@@ -38,14 +38,18 @@ struct Image {
     return v;
   }
 
-  /// What the pressure of the image is above that of its particle at x, per density: (g - a_w) . (x_img - x), wall by
-  /// wall.
-  KOKKOS_INLINE_FUNCTION real pressure_offset(const Vec<Dim>& g, const Vec<Dim, coord>& x) const {
-    const auto way = difference(image_position(*mirror, x), x);
+  /// From the particle to its image [m].
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> way_of_particle() const {
+    return difference(image_position(*mirror, particle), particle);
+  }
+
+  /// What the pressure of the image is above that of its particle, per density: (g - a_w) . (x_img - x), wall by wall.
+  KOKKOS_INLINE_FUNCTION real pressure_offset(const Vec<Dim>& g) const {
+    const auto way = way_of_particle();
     coord sum = 0;
     for (int d = 0; d < Dim; ++d) sum += g[d] * way[d];
     if (mirror->moves) {
-      auto y = x;
+      auto y = particle;
       for_each_wall_from_particle([&](const Panel& w, const Vec<Dim, coord>& at) {
         const coord away = -2 * Sight<Dim>::side(w, y);
         const auto n = Sight<Dim>::as_vec(w.normal);
@@ -132,8 +136,8 @@ struct Itself {
   KOKKOS_INLINE_FUNCTION Pack weight(const Weight& w, const Pack& r2) const { return kept ? weight_kept : w(sqrt(r2)); }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> velocity(const Vec<Dim, Pack>& u) const { return u; }
   KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> sticking_velocity(const Vec<Dim, Pack>& u) const { return u; }
-  template <class Drive, class X>
-  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive&, const X&, const IndexPack&) const {
+  template <class Drive>
+  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive&, const IndexPack&) const {
     return Pack{};
   }
 };
@@ -144,6 +148,9 @@ struct Images {
   Image<Dim> image[pack_lanes];
   Pack share{};       // with which each counts in every sum
   bool kept = false;  // weights are rounded like those of the rows: a mirror image balances its original
+
+  /// Whether lane l sees any.
+  KOKKOS_INLINE_FUNCTION bool there(int l) const { return image[l].mirror != nullptr; }
 
   /// share w(r), from r^2 [m^2].
   KOKKOS_INLINE_FUNCTION Pack weight(const Weight& w, const Pack& r2) const {
@@ -159,17 +166,26 @@ struct Images {
     return mirrored_velocity<true>(u);
   }
 
-  /// What the pressures of the images are above those of their particles j, per density, given what drives particles
-  /// and where they are. It belongs to gradients, loads and probes; never to the pressure rows, whose source carries
-  /// gravity and the wall's motion already.
-  template <class Drive, class X>
-  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive& drive, const X& all_x, const IndexPack& j) const {
+  /// From the particles to their images [m].
+  KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> way_of_particle() const {
+    Vec<Dim, Pack> way{};
+    for (int l = 0; l < pack_lanes; ++l) {
+      if (!image[l].mirror) continue;
+      const auto by = image[l].way_of_particle();
+      for (int d = 0; d < Dim; ++d) set_lane(way[d], l, static_cast<real>(by[d]));
+    }
+    return way;
+  }
+
+  /// What the pressures of the images are above those of their particles j, per density, given what drives particles. It
+  /// belongs to gradients, loads and probes; never to the pressure rows, whose source carries gravity and the wall's motion
+  /// already.
+  template <class Drive>
+  KOKKOS_INLINE_FUNCTION Pack pressure_offset(const Drive& drive, const IndexPack& j) const {
     const auto g = drive.at(j);
-    const auto x = gather_pack<Dim>(all_x, j);
     Pack offset{};
     for (int l = 0; l < pack_lanes; ++l)
-      if (image[l].mirror)
-        set_lane(offset, l, image[l].pressure_offset(lane_of<Dim, real>(g, l), lane_of<Dim, coord>(x, l)));
+      if (image[l].mirror) set_lane(offset, l, image[l].pressure_offset(lane_of<Dim, real>(g, l)));
     return offset;
   }
 

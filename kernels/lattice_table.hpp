@@ -1,6 +1,7 @@
 #pragma once
 // What the regular lattice tells the survey: how a flat surface looks from under it, and how much shifting disorder bears.
 
+#include "core/lanes.hpp"
 #include "kernels/weight.hpp"
 
 namespace greenwater {
@@ -14,6 +15,27 @@ struct LatticeTable {
   real shift;       // way per gradient of the shift function that undoes the stiffest disorder [m^2]
   int few;          // neighbours of a particle of spray
 };
+
+/// 3 t^2 - 2 t^3 between two values, 0 below and 1 above.
+template <class V>
+KOKKOS_INLINE_FUNCTION V smooth_step(const V& x, real from, real to) {
+  const V t = smaller(larger((x - from) * (1 / (to - from)), V{}), all_lanes<V>(real(1)));
+  return t * t * (3 - 2 * t);
+}
+
+/// s of a particle: 1 at the surface, 0 inside; from its tilt, and how many neighbours and images it sees.
+template <class V>
+KOKKOS_INLINE_FUNCTION V surface_share(const LatticeTable& table, const V& tilt, const V& seen) {
+  return select(seen < static_cast<real>(table.few), all_lanes<V>(real(1)), smooth_step(tilt, table.none, table.full));
+}
+
+/// How many neighbours and images the particles of a pack see.
+KOKKOS_INLINE_FUNCTION Pack seen_by(const Read<IndexField>& neighbours, const Read<IndexField>& images, int i) {
+  Pack seen = convert_lanes<Pack>(load_pack(neighbours, i));
+  if (images.extent(0) > 0) seen += convert_lanes<Pack>(load_pack(images, i));
+  return seen;
+}
+
 /// For radii above 2 l0, so that there is a second row.
 LatticeTable make_lattice_table(const Weight& weight, int dim, coord spacing);
 

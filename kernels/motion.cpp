@@ -222,7 +222,6 @@ int advance_in(Fluid& fluid, const Survey& survey, real dt) {
 template <int Dim>
 void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
   const auto near = around_unmoved<Dim>(fluid, fluid.gradient.weight);
-  const auto x = Read<CoordField>(fluid.particles.position);
   const auto p = Read<ScalarField>(fluid.particles.pressure);
   const auto drive = drive_of<Dim>(fluid);
   const auto w = fluid.gradient.weight;
@@ -237,7 +236,7 @@ void pressure_gradient_in(const Fluid& fluid, const VectorField& a) {
         near.for_each(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2));
-          const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, x, j);
+          const Pack pj = gather_pack(p, j) + rho * image.pressure_offset(drive, j);
           p_min = select(weight > 0, smaller(p_min, pj), p_min);
           const auto f = along(Vec<Dim, Pack>{}, weight * inverse(larger(r2, all_lanes<Pack>(touching))), r);
           sum_pf = along(sum_pf, pj, f);

@@ -164,6 +164,7 @@ void build_in_one_pass(NeighborRows& rows, const RowSearch<Dim>& search, Kokkos:
 
 void NeighborRows::build(const Particles& particles, const CellGrid& grid, const MirrorWalls& walls,
                          const RowOptions& options) {
+  grid_ = grid.shape();
   far_ = static_cast<real>(2 * options.radius);
   kept_ = options.laplacian;
   const int count = particles.count;

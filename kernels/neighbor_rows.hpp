@@ -18,6 +18,7 @@ struct Around {
   Kokkos::View<const Mirror*, Device> mirrors;
   Kokkos::View<const Panel*, Device> panels;
   Kokkos::View<const Joint*, Device> joints;
+  GridShape grid;
   real far;   // beyond every radius [m]
   bool kept;  // Itself::weight() may take the weights that stand beside the rows
 
@@ -37,7 +38,7 @@ struct Around {
     const auto xi = load_pack<Dim>(x, i);
     for_each_place(near, i, [&](const int k, const std::int64_t place, const Pack& number) {
       const auto j = load_lanes<IndexPack>(near.index.data() + place);
-      auto r = convert_lanes_of<Pack>(difference(gather_pack<Dim>(x, j), xi));
+      auto r = convert_lanes_of<Pack>(way_between(grid, xi, gather_pack<Dim>(x, j)));
       const auto there = number > static_cast<real>(k);
       for (int d = 0; d < Dim; ++d) r[d] = select(there, r[d], all_lanes<Pack>(far));
       Itself<Dim> itself;
@@ -48,6 +49,11 @@ struct Around {
       }
       f(j, r, itself);
     });
+  }
+
+  /// Where a particle at xj is, or its repetition beside xi.
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> place_beside(const Vec<Dim, coord>& xi, const Vec<Dim, coord>& xj) const {
+    return grid.repeats() ? along(xi, coord(1), way_between(grid, xi, xj)) : xj;
   }
 
   template <class F>
@@ -64,7 +70,7 @@ struct Around {
       for (int l = 0; l < pack_lanes; ++l) {
         if (!(k < lane(number, l))) continue;
         const Mirror* m = &mirrors(images.mirror(place + l));
-        const auto from = lane_of<Dim, coord>(xi, l), to = lane_of<Dim, coord>(xj, l);
+        const auto from = lane_of<Dim, coord>(xi, l), to = place_beside(from, lane_of<Dim, coord>(xj, l));
         const auto way = difference(image_position(*m, to), from);
         for (int d = 0; d < Dim; ++d) set_lane(r[d], l, static_cast<real>(way[d]));
         set_lane(image.share, l, images.share(place + l));
@@ -104,7 +110,7 @@ class NeighborRows {
 
   template <int Dim>
   Around<Dim> around(const Particles& particles, const MirrorWalls& walls) const {
-    return {particles.position, near, images, walls.mirror, walls.panel, walls.joint, far_, false};
+    return {particles.position, near, images, walls.mirror, walls.panel, walls.joint, grid_, far_, false};
   }
 
   /// As around(), where particles are still where they were when the rows were built: then sums with the weight whose
@@ -122,6 +128,7 @@ class NeighborRows {
  private:
   IndexField total_;
   Kokkos::View<std::int64_t[4], Device> taken_;
+  GridShape grid_;
   real far_ = 0;
   Weight kept_;
 };

@@ -60,8 +60,8 @@ Workbench& workbench() {
   return bench;
 }
 
-// Which of the candidates first ... last - 1 are within reach of particle i. `keep(r2, x)` tells what is to be kept of a
-// vector of them, with what distance.
+// Which of the candidates first ... last - 1 are within reach of particle i, seen from x_i. `keep(r2, x)` tells what is to be
+// kept of a vector of them, with what distance.
 template <int Dim, class Keep>
 void find_among(const double* const* x, const Vec<Dim, coord>& xi, int i, int first, int last, Workbench& bench,
                 Keep keep) {
@@ -84,22 +84,6 @@ void find_among(const double* const* x, const Vec<Dim, coord>& xi, int i, int fi
     count += __builtin_popcount(bits);
   }
   bench.count = count;
-}
-
-// Calls f(first, last) for the stretches of candidates around x.
-template <int Dim, class F>
-void for_each_stretch(const GridShape& grid, const int* cell_first, const Vec<Dim, coord>& x, F f) {
-  int low[3] = {0, 0, 0}, high[3] = {0, 0, 0};
-  for (int d = 0; d < Dim; ++d) {
-    const int k = grid.along(d, x[d]);
-    low[d] = k > 0 ? k - 1 : 0;
-    high[d] = k + 1 < grid.cells[d] ? k + 1 : k;
-  }
-  for (int cz = low[2]; cz <= high[2]; ++cz)
-    for (int cy = low[1]; cy <= high[1]; ++cy) {
-      const int row = (cz * grid.cells[1] + cy) * grid.cells[0];
-      f(cell_first[row + low[0]], cell_first[row + high[0] + 1]);
-    }
 }
 
 // One chunk of rows, from finding to writing.
@@ -180,17 +164,17 @@ class ChunkBuilder {
     const coord reach2 = search_.radius * search_.radius;
     int candidates = 0;
     for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi,
-                          [&](int first, int last) { candidates += last - first; });
+                          [&](int first, int last, const auto&) { candidates += last - first; });
     bench_.make_room(2 * candidates);  // each may be there twice: itself, and as an image
     auto sight = sight_from(search_.walls, search_.grid, xi);
     int room[RowSearch<Dim>::capacity];
     if (sight.begin != sight.end) sight.narrow(xi, search_.radius, room, RowSearch<Dim>::capacity);
     if (sight.begin == sight.end) {
-      for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last) {
-        find_among<Dim>(x_, xi, i, first, last, bench_,
+      for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last, const auto& move) {
+        find_among<Dim>(x_, difference(xi, move), i, first, last, bench_,
                         [&](const Vec<Dim, Doubles>&, const Doubles& r2) { return lane_bits(r2 < reach2); });
       });
-    } else if (sight.one_endless_wall(xi, search_.radius)) {
+    } else if (sight.one_endless_wall(xi, search_.radius) && !search_.grid.repeats()) {
       find_beside_wall(lane, i, xi, sight.reach[sight.begin], sight.panel[sight.reach[sight.begin]]);
     } else {
       search_.neighbours(i, [&](int j, coord r2) { bench_.put(j, r2); });
@@ -208,14 +192,14 @@ class ChunkBuilder {
       for (int d = 0; d < Dim; ++d) s += wall.normal[d] * (xj[d] - wall.point[d]);
       return s;
     };
-    for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last) {
+    for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last, const auto&) {
       find_among<Dim>(x_, xi, i, first, last, bench_, [&](const Vec<Dim, Doubles>& xj, const Doubles& r2) {
         const Doubles sj = side(xj);
         return lane_bits((r2 < reach2) & ((si * sj > 0) | (sj == si)));
       });
     });
     const int before = bench_.count;
-    for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last) {
+    for_each_stretch<Dim>(search_.grid, search_.cell_first.data(), xi, [&](int first, int last, const auto&) {
       find_among<Dim>(x_, xi, -width, first, last, bench_, [&](const Vec<Dim, Doubles>& xj, Doubles& r2) {
         const Doubles both = si * side(xj);
         r2 += 4 * both;

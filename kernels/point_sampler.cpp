@@ -97,10 +97,9 @@ void sample_in(const Fluid& fluid, Reading reading, const CoordField& point, con
         const int size = fits ? 1 + Dim - frame.walls : 1;
         Fit<Dim + 1> fit;
         for_each_candidate<Dim>(grid, first, q, [&](const int j) {
-          const auto xj = load<Dim>(x, j);
-          const auto r = difference(xj, q);
+          const auto r = way_between(grid, q, load<Dim>(x, j));
           const real weight = w(static_cast<real>(sqrt(dot(r, r))));
-          if (!(weight > 0) || !sight.sees(q, xj)) return;
+          if (!(weight > 0) || !sight.sees(q, along(q, coord(1), r))) return;
           accum at_wall = p(j), basis[Dim + 1] = {1};
           for (int k = 0; fits && k < Dim; ++k) {
             const coord off = dot(r, frame.axis[k]);

@@ -3,26 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernels/biconjugate_gradient.hpp"
 #include "kernels/blas.hpp"
 #include "kernels/multigrid.hpp"
 #include "kernels/preconditioner_with_term.hpp"
+#include "kernels/pressure_vectors.hpp"
 
 namespace greenwater {
 namespace {
 
-void clear(const ScalarField& p, int count) {
-  Kokkos::parallel_for(
-      "greenwater::clear_pressure", Range(0, count), KOKKOS_LAMBDA(const int i) { p(i) = 0; });
-}
-
 void clear_unless_finite(const ScalarField& p, int count) {
-  if (!std::isfinite(blas::dot(p, p, count))) clear(p, count);
+  if (!std::isfinite(blas::dot(p, p, count))) clear_pressure(p, count);
 }
 
 class Plain : public PressureSolver {
  public:
   Plain(std::unique_ptr<Preconditioner> preconditioner, const CgOptions& options)
-      : preconditioner_(std::move(preconditioner)), cg_(options) {}
+      : preconditioner_(std::move(preconditioner)), cg_(options), bicg_(options) {}
 
   SolveReport solve(PressureSystem& system, const ScalarField& p) override {
     preconditioner_->update(system);
@@ -31,14 +28,17 @@ class Plain : public PressureSolver {
 
   SolveReport solve_again(PressureSystem& system, const ScalarField& p) override {
     clear_unless_finite(p, system.count());
-    const SolveReport report = cg_.solve(system, *preconditioner_, p);
+    const SolveReport report =
+        system.symmetric() ? cg_.solve(system, *preconditioner_, p) : bicg_.solve(system, *preconditioner_, p);
     if (!report.converged) clear_unless_finite(p, system.count());
+    if (system.closed()) system.remove_mean(p);
     return report;
   }
 
  private:
   std::unique_ptr<Preconditioner> preconditioner_;
   ConjugateGradient cg_;
+  BiconjugateGradient bicg_;  // where the system is not symmetric; else it holds nothing
 };
 
 CgOptions shortened(CgOptions options, int most) {
@@ -67,11 +67,11 @@ class WithMultigrid : public PressureSolver {
     if (first.converged || !std::isfinite(first.residual)) return first;
 
     system.raise_diagonal(raise_);
-    clear(p, system.count());
+    clear_pressure(p, system.count());
     SolveReport report = first_way_.solve(system, p);
     report.recovery = "a larger diagonal";
     if (!report.converged) {
-      clear(p, system.count());
+      clear_pressure(p, system.count());
       const int before = report.iterations;
       report = last_resort_.solve(system, p);
       report.iterations += before;

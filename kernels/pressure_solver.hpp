@@ -25,7 +25,7 @@ class PressureSolver {
   virtual SolveReport solve_again(PressureSystem& system, const ScalarField& p) = 0;
 };
 
-/// With multigrid: conjugate gradients with it. When that fails (a closed cluster
+/// With multigrid: conjugate gradients with it, for rows that are not symmetric stabilised biconjugate ones. When that fails (a closed cluster
 /// without a surface particle, say), the system's diagonal is made larger, which stays so, and it is tried again from
 /// zero, and then conjugate gradients with the diagonal. The report tells why the first way failed, as its cause, and what
 /// helped; its residual is that of the system that was solved last. When nothing helps, p is the last iterate or zero.

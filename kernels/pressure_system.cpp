@@ -67,10 +67,9 @@ KOKKOS_INLINE_FUNCTION Pack store_product(const Read<FlagField>& fixed, real K, 
   return product;
 }
 
-accum apply_kept(const Fluid& fluid, real K, const FlagField& held, const ScalarField& diagonal, const ScalarField& p,
-                 const ScalarField& Ap) {
+accum apply_kept(const Fluid& fluid, const Rows& near, real K, const FlagField& held, const ScalarField& diagonal,
+                 const ScalarField& p, const ScalarField& Ap) {
   const auto fixed = Read<FlagField>(held);
-  const auto near = fluid.rows.near;
   const int count = fluid.particles.count;
   accum energy = 0;
   Kokkos::parallel_reduce(
@@ -120,6 +119,8 @@ accum apply_recomputed_in(const Fluid& fluid, real K, const FlagField& held, con
 
 void PressureSystem::assemble(const Fluid& fluid, real dt) {
   fluid_ = &fluid;
+  weights_ = {};
+  closed_ = false;
   fixed_ = fluid.particles.surface;
   if (rhs_.extent(0) < fluid.particles.id.extent(0)) {
     rhs_ = uncleared<ScalarField>("greenwater::pressure_rhs", fluid.particles.id.extent(0));
@@ -136,19 +137,62 @@ void PressureSystem::assemble(const Fluid& fluid, real dt) {
 void PressureSystem::assemble(const Fluid& fluid, const ScalarField& rhs, const ScalarField& diagonal,
                               const FlagField& fixed) {
   fluid_ = &fluid;
+  weights_ = {};
+  closed_ = false;
   rhs_ = rhs;
   diagonal_ = diagonal;
   fixed_ = fixed;
 }
 
-void PressureSystem::raise_diagonal(real part) { raise(diagonal_, fixed(), part, count()); }
+void PressureSystem::replace_rows(const FloatField& weights, const ScalarField& diagonal) {
+  weights_ = weights;
+  row_diagonal_ = diagonal;
+}
+
+void PressureSystem::close() {
+  closed_ = true;
+  remove_mean(rhs_);
+}
+
+void PressureSystem::remove_mean(const ScalarField& p) const {
+  const auto fixed = Read<FlagField>(fixed_);
+  accum sum = 0, free = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::pressure_mean", Range(0, count()),
+      KOKKOS_LAMBDA(const int i, accum& total, accum& number) {
+        if (fixed(i)) return;
+        total += p(i);
+        number += 1;
+      },
+      sum, free);
+  if (free == 0) return;
+  const real mean = static_cast<real>(sum / free);
+  Kokkos::parallel_for(
+      "greenwater::remove_mean", Range(0, count()), KOKKOS_LAMBDA(const int i) {
+        if (!fixed(i)) p(i) -= mean;
+      });
+}
+
+void PressureSystem::raise_diagonal(real part) {
+  raise(diagonal_, fixed(), part, count());
+  if (!symmetric()) raise(row_diagonal_, fixed(), part, count());
+  closed_ = false;
+}
 
 real PressureSystem::factor() const { return laplacian_factor(*fluid_); }
 
 accum PressureSystem::apply(const ScalarField& p, const ScalarField& Ap) const {
   const real K = laplacian_factor(*fluid_);
   const bool flat = fluid_->particles.dim == 2;
-  const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, K, fixed_, diagonal_, p, Ap)
+  if (!symmetric()) {
+    Rows rows = fluid_->rows.near;
+    rows.weight = weights_;
+    accum energy = apply_kept(*fluid_, rows, K, fixed_, row_diagonal_, p, Ap);
+    if (added_) energy += added_->add_product(fixed(), p, Ap);
+    if (closed_) remove_mean(Ap);  // rows that are not symmetric do not do so by themselves
+    return energy;
+  }
+  const accum energy = fluid_->keep_weights ? apply_kept(*fluid_, fluid_->rows.near, K, fixed_, diagonal_, p, Ap)
                        : flat               ? apply_recomputed_in<2>(*fluid_, K, fixed_, diagonal_, p, Ap)
                                             : apply_recomputed_in<3>(*fluid_, K, fixed_, diagonal_, p, Ap);
   return added_ ? energy + added_->add_product(fixed(), p, Ap) : energy;

@@ -31,6 +31,18 @@ class PressureSystem {
   /// Takes right side, diagonal and rows to be left out (1) as somebody made them: fields like those of the particles.
   void assemble(const Fluid& fluid, const ScalarField& rhs, const ScalarField& diagonal, const FlagField& fixed);
 
+  /// A is made of these from now on, until the next assemble(): weights over K in the places of the rows', and a diagonal. What
+  /// preconditioners look at stays as it was. Then A is not symmetric.
+  void replace_rows(const FloatField& weights, const ScalarField& diagonal);
+  bool symmetric() const { return weights_.extent(0) == 0; }
+
+  /// Nothing holds p anywhere: of all pressures that differ by a constant the one without a mean is meant, and of the
+  /// equations what is left when their mean is taken off. Until the next assemble().
+  void close();
+  bool closed() const { return closed_; }
+  /// Takes the mean off; of what is not held.
+  void remove_mean(const ScalarField& p) const;
+
   /// Makes the diagonal larger by this part of itself: as if the fluid were more compressible.
   void raise_diagonal(real part);
 
@@ -42,7 +54,7 @@ class PressureSystem {
 
   int count() const { return fluid_ ? fluid_->particles.count : 0; }
   const ScalarField& rhs() const { return rhs_; }            // b [Pa/m^2]
-  const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is
+  const ScalarField& diagonal() const { return diagonal_; }  // [1/m^2]; 1 where the surface is; of the symmetric rows
   const FlagField& fixed() const { return fixed_; }          // 1 where the row is left out, p = 0
   const Fluid& fluid() const { return *fluid_; }
   real factor() const;  // K [1/m^2]
@@ -53,6 +65,9 @@ class PressureSystem {
   const Fluid* fluid_ = nullptr;
   const AddedTerm* added_ = nullptr;
   ScalarField rhs_, diagonal_;
+  FloatField weights_;        // that replace those of the rows; empty: nothing does
+  ScalarField row_diagonal_;  // with them
+  bool closed_ = false;
   FlagField fixed_;
 };
 

@@ -11,11 +11,20 @@ namespace {
 template <int Dim>
 struct Pusher {
   Around<Dim> near;
+  Fits<Dim> fits;
   Weight w;
   Read<VectorField> correction;
   Read<FlagField> fixed;
-  coord touching, nearest2, scale;
+  coord touching, nearest2, n0, twice_volume;
   int body;
+
+  // What the velocity of an image at r counts in the divergence of particle i by least squares.
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> fitted_pull(int i, const Vec<Dim, coord>& r, real share) const {
+    const int first = i / pack_lanes * pack_lanes;
+    Vec<Dim, Pack> r_of_all;
+    for (int d = 0; d < Dim; ++d) r_of_all[d] = all_lanes<Pack>(static_cast<real>(r[d]));
+    return lane_of<Dim, coord>(fits.of(first).slope(r_of_all, share), i - first);
+  }
 
   // Calls f(face, place, force per pressure) for every wall of the body on the path of every image of particle i.
   template <class F>
@@ -28,19 +37,20 @@ struct Pusher {
     for (int k = 0; k < number; ++k) {
       const auto entry = near.images.place(i, k);
       const Mirror& mirror = near.mirrors(near.images.mirror(entry));
-      const auto xj = load<Dim>(near.x, near.images.index(entry));
+      const auto xj = near.place_beside(xi, load<Dim>(near.x, near.images.index(entry)));
       const auto r = difference(image_position(mirror, xj), xi);
       const coord r2 = dot(r, r);
       if (!(r2 > touching)) continue;
-      real weight = near.images.share(entry) * w(static_cast<real>(sqrt(r2)));
+      const real share = near.images.share(entry);
+      real weight = share * w(static_cast<real>(sqrt(r2)));
       if (near.kept) weight = static_cast<float>(weight);  // as the divergence had it
       const Image<Dim> image{&mirror, near.panels.data(), near.joints.data(), xj, xi};
-      auto pull = product(C, r);
+      auto pull = along(Vec<Dim, coord>{}, weight / (n0 * larger(r2, nearest2)), product(C, r));
+      if (fits.any) pull = along(pull, fits.share(i), difference(fitted_pull(i, r, share), pull));
       image.for_each_wall([&](const Panel& wall, const Vec<Dim, coord>& place) {
         const auto n = Sight<Dim>::as_vec(wall.normal);
         const coord along_n = dot(pull, n);
-        if (wall.body == body)
-          f(wall.face, place, along(Vec<Dim, coord>{}, scale * weight / larger(r2, nearest2) * along_n, n));
+        if (wall.body == body) f(wall.face, place, along(Vec<Dim, coord>{}, twice_volume * along_n, n));
         pull = along(pull, -2 * along_n, n);
       });
     }
@@ -51,12 +61,14 @@ template <int Dim>
 Pusher<Dim> pusher_of(const Fluid& fluid, const Survey& survey, int body) {
   const auto w = fluid.gradient.weight;
   return {around_unmoved<Dim>(fluid, w),
+          Fits<Dim>(fluid.fits),
           w,
           survey.divergence_correction,
           survey.fixed,
           1e-12 * fluid.spacing * fluid.spacing,
           std::pow(nearest_quotient * fluid.spacing, 2),
-          2 * std::pow(fluid.spacing, Dim) / fluid.gradient.reference.n0,
+          fluid.gradient.reference.n0,
+          2 * std::pow(fluid.spacing, Dim),
           body};
 }
 

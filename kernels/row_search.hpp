@@ -6,7 +6,7 @@
 namespace greenwater {
 
 /// The search for one particle after another. Pairs are judged from the lower index: both get the same answer, to the
-/// last bit.
+/// last bit, where space does not repeat itself between them.
 template <int Dim>
 struct RowSearch {
   Read<CoordField> x;
@@ -19,12 +19,13 @@ struct RowSearch {
 
   static constexpr int capacity = 96;  // walls and corners near one particle; with more it goes on, slower
 
-  KOKKOS_INLINE_FUNCTION static coord distance2(const Vec<Dim, coord>& a, const Vec<Dim, coord>& b) {
-    const auto r = difference(b, a);
-    return dot(r, r);
-  }
-
   KOKKOS_INLINE_FUNCTION bool within_reach(coord r2) const { return r2 < radius * radius; }
+
+  /// Where j is, or its repetition beside x_i.
+  KOKKOS_INLINE_FUNCTION Vec<Dim, coord> place_beside(const Vec<Dim, coord>& xi, const Vec<Dim, coord>& way,
+                                                      int j) const {
+    return grid.repeats() ? along(xi, coord(1), way) : load<Dim>(x, j);
+  }
 
   /// Calls f(j, r^2) for every neighbour of i.
   template <class F>
@@ -36,9 +37,10 @@ struct RowSearch {
     const bool in_the_open = sight.begin == sight.end;
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
       if (j == i) return;
-      const auto xj = load<Dim>(x, j);
-      const coord r2 = distance2(xi, xj);
+      const auto way = way_between(grid, xi, load<Dim>(x, j));
+      const coord r2 = dot(way, way);
       if (!within_reach(r2)) return;
+      const auto xj = place_beside(xi, way, j);
       if (in_the_open || (i < j ? sight.sees(xi, xj) : sight.sees(xj, xi))) f(j, r2);
     });
   }
@@ -52,9 +54,10 @@ struct RowSearch {
     sight.narrow(xi, radius, room, capacity);
     if (sight.begin == sight.end) return;
     for_each_candidate<Dim>(grid, cell_first, xi, [&](const int j) {
-      const auto xj = load<Dim>(x, j);
-      const coord r2 = distance2(xi, xj);
+      const auto way_to_j = way_between(grid, xi, load<Dim>(x, j));
+      const coord r2 = dot(way_to_j, way_to_j);
       if (!within_reach(r2)) return;  // a path by way of walls is longer than the straight one
+      const auto xj = place_beside(xi, way_to_j, j);
       const bool forward = i <= j;
       const auto &a = forward ? xi : xj, &b = forward ? xj : xi;
       for (int m = sight.begin; m < sight.end; ++m) {

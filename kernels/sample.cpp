@@ -105,7 +105,7 @@ void cut_triangle(const Place& a, const Place& b, const Place& c, coord length, 
 std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord length) {
   std::vector<WallPatch> patches;
   for (const WallFace& face : walls.faces) {
-    if (face.body != body) continue;
+    if (face.body != body || face.repeated) continue;
     const auto& c = face.corner;
     if (walls.dim == 2)
       cut_segment(c[0].position, c[1].position, length, patches);

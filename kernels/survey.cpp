@@ -11,12 +11,6 @@ constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the
 constexpr real crowd_margin = real(0.05);             // of 1 - n / n^0: who is crowded may lack that much less
 constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
 
-template <class V>
-KOKKOS_INLINE_FUNCTION V smooth_step(const V& x, real from, real to) {
-  const V t = smaller(larger((x - from) * (1 / (to - from)), V{}), all_lanes<V>(real(1)));
-  return t * t * (3 - 2 * t);
-}
-
 // How round a stencil is: (d^d det M) / (tr M)^d.
 template <int Dim, class V>
 KOKKOS_INLINE_FUNCTION V roundness(const V& det, const V& trace) {
@@ -60,12 +54,15 @@ struct Sums {
   Symmetric<Dim, Pack> M{};
   Pack B[Dim][Dim]{};
   Pack g_offset{};  // (1 / n^0) sum over images of w g . (x_img - x_j)
+  Pack fitted_gradient[Dim][Dim]{},
+      fitted_offset{};  // grad u, and that sum with the Laplacian's factors, by least squares
 };
 
-template <int Dim>
+// fitted: with least squares, as far as a particle's share goes.
+template <int Dim, bool fitted>
 struct Surveyor {
   Around<Dim> near;
-  Read<CoordField> x;
+  Fits<Dim> fits;
   Read<VectorField> u;
   Read<ScalarField> n;
   Read<AccumField> weight_sum;
@@ -75,12 +72,14 @@ struct Surveyor {
   ShiftFunction shift;
   LatticeTable table;
   Survey out;
-  real n0, l0, touching, nearest2, K, per_dt, drift, step, longest, g[3];
+  real n0, l0, touching, nearest2, K, per_dt, curving, drift, step, longest, g[3];
 
   KOKKOS_INLINE_FUNCTION Sums<Dim> sums(int i) const {
     Sums<Dim> sum;
     const auto ui = load_pack<Dim>(u, i);
     const real per_n0 = 1 / n0;
+    Fit<Dim> fit;
+    if constexpr (fitted) fit = fits.of(i);
     const auto add = [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
       const auto du = difference(image.velocity(gather_pack<Dim>(u, j)), ui);
       const Pack r2 = dot(r, r);
@@ -93,29 +92,35 @@ struct Surveyor {
       const Pack slope =
           zero_unless(weight > 0, shift.slope(sqrt(larger(r2, all_lanes<Pack>(touching)))) * image.share);
       sum.crowd = along(sum.crowd, slope, r);
+      if constexpr (fitted) {
+        const auto q = fit.slope(r, image.share);
+        for (int d = 0; d < Dim; ++d)
+          for (int e = 0; e < Dim; ++e) sum.fitted_gradient[d][e] += du[d] * q[e];
+      }
       return weight;
     };
     near.for_each_neighbour(i, add);
     near.for_each_image(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
       const Pack weight = add(j, r, image);
-      const auto xi = load_pack<Dim>(x, i);
-      const auto way = convert_lanes_of<Pack>(difference(gather_pack<Dim>(x, j), xi));
-      for (int d = 0; d < Dim; ++d) sum.g_offset += zero_unless(weight > 0, weight * g[d] * (r[d] - way[d]));
+      const auto way = image.way_of_particle();
+      Pack lift{};
+      for (int d = 0; d < Dim; ++d) lift += g[d] * way[d];
+      sum.g_offset += weight * lift;
+      if constexpr (fitted) sum.fitted_offset += fit.bend(r, image.share) * lift;
     });
     return sum;
   }
 
-  KOKKOS_INLINE_FUNCTION void operator()(int i) const {
+  // Returns how many of the pack have a surface to hold their pressure.
+  KOKKOS_INLINE_FUNCTION int operator()(int i, int count) const {
     const Sums<Dim> sum = sums(i);
     const Pack ni = load_pack(n, i), full = n0 * inverse(larger(ni, all_lanes<Pack>(real(1e-6) * n0)));
-    Pack seen = convert_lanes<Pack>(load_pack(neighbours, i));
-    if (images.extent(0) > 0) seen += convert_lanes<Pack>(load_pack(images, i));
+    const Pack seen = seen_by(neighbours, images, i);
 
     // How far it is to the surface, and where
     const Pack slope = sqrt(dot(sum.S, sum.S)), tilt = slope * full * (1 / l0);
     const Pack m = larger(1 - ni * (1 / n0), larger(missing_of(table, tilt) - crowd_margin, Pack{}));
-    Pack s = smooth_step(tilt, table.none, table.full);
-    s = select(seen < static_cast<real>(table.few), all_lanes<Pack>(real(1)), s);
+    const Pack s = surface_share(table, tilt, seen);
     const Pack per_depth = inverse(depth_of(table, m) * l0);
     const Pack tip = smooth_step(m, table.missing[0], table.missing[0] + thin) * m * (1 + table.bulge * m);
     const Pack missing = s * larger(slope * per_depth, tip);
@@ -123,6 +128,8 @@ struct Surveyor {
     for (int d = 0; d < Dim; ++d) normal[d] *= -inverse(larger(slope, all_lanes<Pack>(real(1e-6) * l0)));
 
     // grad u; what is missing counts as if it were round, which keeps the divergence of the few from being overrated
+    Pack part{};
+    if constexpr (fitted) part = load_pack(fits.share, i);
     auto M = sum.M;
     M.add_unit(s * m * (real(1) / Dim));
     const auto C = correction_of(M);
@@ -130,10 +137,14 @@ struct Surveyor {
     for (int d = 0; d < Dim; ++d) {
       for (int e = 0; e < Dim; ++e) {
         for (int f = 0; f < Dim; ++f) grad[d][e] += sum.B[d][f] * C(f, e);
+        if constexpr (fitted) grad[d][e] += part * (sum.fitted_gradient[d][e] - grad[d][e]);
         store_lanes(&out.velocity_gradient(i, d * Dim + e), grad[d][e]);
       }
       div += grad[d][d];
     }
+    Pack turn{};  // tr (grad u)^2
+    for (int d = 0; d < Dim; ++d)
+      for (int e = 0; e < Dim; ++e) turn += grad[d][e] * grad[e][d];
 
     if (out.divergence_correction.extent(0) > 0)
       for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.divergence_correction(i, k), C.c[k]);
@@ -145,7 +156,8 @@ struct Surveyor {
     const Pack error = s * larger(excess, Pack{}) + (1 - s) * excess;
     Pack gravity = -sum.g_offset;
     for (int d = 0; d < Dim; ++d) gravity += g[d] * (1 - s) * sum.S[d];
-    const Pack b = -per_dt * div + drift * error - K * n0 * gravity;
+    const Pack b = -per_dt * div + curving * (1 - s) * turn + drift * error - (1 - part) * K * n0 * gravity +
+                   part * sum.fitted_offset;
     const Pack diagonal = K * (convert_lanes<Pack>(load_pack(weight_sum, i)) + n0 * missing);
     store_lanes(&out.rhs(i), select(held, Pack{}, b));
     store_lanes(&out.diagonal(i), select(held, all_lanes<Pack>(real(1)), diagonal));
@@ -164,48 +176,56 @@ struct Surveyor {
       store_lanes(&out.correction(i, k), select(held, Pack{}, C_p.c[k]));
     for (int d = 0; d < Dim; ++d) store_lanes(&out.surface_point(i, d), there * per_depth * normal[d]);
 
-    if (out.disorder.extent(0) == 0) return;
+    int held_by_surface = 0;
+    for (int l = 0; l < pack_lanes; ++l) held_by_surface += i + l < count && lane(missing, l) > 0;
+    if (out.disorder.extent(0) == 0) return held_by_surface;
     auto shift = along(Vec<Dim, Pack>{}, all_lanes<Pack>(-step), sum.crowd);
     shift = along(shift, -s * dot(shift, normal), normal);  // along the surface, not through it
     const Pack length2 = dot(shift, shift), longest2 = all_lanes<Pack>(longest * longest);
-    Pack part =
+    Pack shorter =
         select(length2 > longest2, longest * inverse(sqrt(larger(length2, longest2))), all_lanes<Pack>(real(1)));
-    part = select(seen < static_cast<real>(table.few), Pack{}, part);
-    for (int d = 0; d < Dim; ++d) store_lanes(&out.disorder(i, d), part * shift[d]);
+    shorter = select(seen < static_cast<real>(table.few), Pack{}, shorter);
+    for (int d = 0; d < Dim; ++d) store_lanes(&out.disorder(i, d), shorter * shift[d]);
+    return held_by_surface;
   }
 };
 
-template <int Dim>
+template <int Dim, bool fitted>
 void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& out) {
   const Particles& p = fluid.particles;
   const Weight& w = fluid.gradient.weight;
   const Reference& lattice = fluid.gradient.reference;
   const real l0 = static_cast<real>(fluid.spacing), rho = fluid.rho;
   const ShiftFunction shift = shift_function(w, l0);
-  Surveyor<Dim> surveyor{around_unmoved<Dim>(fluid, w),
-                         p.position,
-                         p.velocity,
-                         p.number_density,
-                         fluid.rows.near.weight_sum,
-                         fluid.rows.near.number,
-                         fluid.rows.images.number,
-                         p.surface,
-                         w,
-                         shift,
-                         table,
-                         out,
-                         lattice.n0,
-                         l0,
-                         real(1e-12) * l0 * l0,
-                         nearest_quotient * nearest_quotient * l0 * l0,
-                         2 * Dim / (lattice.lambda * lattice.n0),
-                         rho / dt,
-                         rho * (options.drift_speed / l0) * (options.drift_speed / l0),
-                         options.shift_rate * table.shift,
-                         options.shift_limit * l0,
-                         {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}};
-  Kokkos::parallel_for(
-      "greenwater::survey", packs(p.count), KOKKOS_LAMBDA(const int pack) { surveyor(pack * pack_lanes); });
+  Surveyor<Dim, fitted> surveyor{around_unmoved<Dim>(fluid, w),
+                                 Fits<Dim>(fluid.fits),
+                                 p.velocity,
+                                 p.number_density,
+                                 fluid.rows.near.weight_sum,
+                                 fluid.rows.near.number,
+                                 fluid.rows.images.number,
+                                 p.surface,
+                                 w,
+                                 shift,
+                                 table,
+                                 out,
+                                 lattice.n0,
+                                 l0,
+                                 real(1e-12) * l0 * l0,
+                                 nearest_quotient * nearest_quotient * l0 * l0,
+                                 2 * Dim / (lattice.lambda * lattice.n0),
+                                 rho / dt,
+                                 options.keeps_volume ? rho / 2 : real(0),
+                                 rho * (options.drift_speed / l0) * (options.drift_speed / l0),
+                                 options.shift_rate * table.shift,
+                                 options.shift_limit * l0,
+                                 {rho * fluid.gravity[0], rho * fluid.gravity[1], rho * fluid.gravity[2]}};
+  const int count = p.count;
+  int held_by_surface = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::survey", packs(count),
+      KOKKOS_LAMBDA(const int pack, int& sum) { sum += surveyor(pack * pack_lanes, count); }, held_by_surface);
+  out.closed = held_by_surface == 0;
 }
 
 void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
@@ -231,8 +251,12 @@ void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
 void survey(const Fluid& fluid, const LatticeTable& table, const SurveyOptions& options, real dt, Survey& found) {
   Region region("survey");
   make_room(fluid.particles, options, found);
-  fluid.particles.dim == 2 ? survey_in<2>(fluid, table, options, dt, found)
-                           : survey_in<3>(fluid, table, options, dt, found);
+  const bool flat = fluid.particles.dim == 2;
+  if (fluid.fits.empty())
+    flat ? survey_in<2, false>(fluid, table, options, dt, found)
+         : survey_in<3, false>(fluid, table, options, dt, found);
+  else
+    flat ? survey_in<2, true>(fluid, table, options, dt, found) : survey_in<3, true>(fluid, table, options, dt, found);
 }
 
 }  // namespace greenwater

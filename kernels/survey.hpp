@@ -18,11 +18,13 @@ struct SurveyOptions {
   bool shifts = true;            // whether particles are shifted at all
   real shift_rate = 0;           // part of the stiffest disorder that is undone in this step; above 2 it would grow [-]
   bool loads = false;            // keeps what wall_reaction() needs
+  bool keeps_volume = true;      // in the step as a whole, not only at its start: the term with tr (grad u*)^2
   real shift_limit = real(0.1);  // longest shift, x spacing
 };
 
 /// What is known of every particle after a survey; fields like those of the particles.
 struct Survey {
+  bool closed = false;                // nothing holds the pressure: no particle is near a surface
   ScalarField rhs, diagonal;          // of the pressure's row (kernels/pressure_system.hpp)
   FlagField fixed;                    // 1: in free flight, without a row
   ScalarField surface;                // s: 1 at the surface, 0 inside
@@ -37,8 +39,11 @@ struct Survey {
 
 /// Surveys all particles with u* in particles.velocity (without gravity) and makes the rows of the pressure:
 ///
-///   K [sum w (p_j - p_i) - m_i p_i] = (rho / dt) div u* - rho (c_s / l0)^2 (n - n^0) / n^0 + K n^0 rho g . (S' - s S)
+///   K [sum w (p_j - p_i) - m_i p_i] = (rho / dt) [div u* - dt (1 - s) tr (grad u*)^2 / 2]
+///                                     - rho (c_s / l0)^2 (n - n^0) / n^0 + K n^0 rho g . (S' - s S)
 ///
+/// The step x += dt u changes volumes by det (I + dt grad u) = 1 + dt div u - dt^2 tr (grad u)^2 / 2 + ...: a flow that is
+/// only free of divergence where particles start from thins out where it turns and crowds where it strains, at a rate of dt.
 /// Gravity acts through the same sums as the pressure, not through div (dt g): so p = rho g depth solves the rows to
 /// the last digit, however particles lie. S' is S with an image taken where its particle is. Near the surface (s = 1)
 /// a point without pressure stands for what is missing, at the depth that n tells: m_i = n^0 |S| / depth makes a linear

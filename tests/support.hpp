@@ -66,7 +66,8 @@ struct FluidOptions {
   coord spacing = 0.1;
   coord radius = 3.1;  // x spacing
   real shift = real(0.05);
-  coord margin = 1;  // grid beyond the particles and walls [m]
+  coord margin = 1;               // grid beyond the particles and walls [m]
+  std::array<coord, 3> period{};  // from 0 on, along axes where it is not 0 [m]
 };
 
 /// A fluid of particles at the given places between the given walls, sorted, with rows and number density.
@@ -90,7 +91,14 @@ inline Fluid fluid_at(const Positions& at, const WallFaces& walls = {}, const Fl
     low[d] -= options.margin;
     high[d] += options.margin;
   }
-  fluid.grid = CellGrid(make_grid(options.dim, low, high, weight.radius));
+  std::array<bool, 3> repeats{};
+  for (int d = 0; d < options.dim; ++d) {
+    repeats[d] = options.period[d] > 0;
+    if (!repeats[d]) continue;
+    low[d] = 0;
+    high[d] = options.period[d];
+  }
+  fluid.grid = CellGrid(make_grid(options.dim, low, high, weight.radius, repeats));
   fluid.faces = walls;
   fluid.faces.dim = options.dim;
   make_mirror_walls(fluid.walls, fluid.faces, fluid.grid.shape(), options.spacing);

@@ -39,6 +39,7 @@ struct Interface {
     for (real& g : fluid.gravity) g = 0;
     SurveyOptions options;
     options.loads = true;
+    options.keeps_volume = false;  // what is not linear in the walls' speed
     survey(fluid, make_lattice_table(fluid.gradient.weight, walls.dim, fluid.spacing), options, dt, found);
     rows.clear();
     add_wall_rows(wall_pushes(fluid, found, body()), fluid.faces, *surface, first_face, 0, rows);

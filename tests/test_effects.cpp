@@ -88,7 +88,7 @@ TEST_CASE("every launch and allocation has a name of ours", "[unit][effects]") {
   Ears ears;
   const auto scheme = make_classic(classic());
   Effects effects;
-  effects.add(make_viscosity(real(1e-6)));
+  effects.add(make_viscosity({real(1e-6)}));
   effects.add(make_collision({}));
   effects.add(make_body_force(constant_force(1, 0)));
   Fluid fluid = water();
@@ -108,7 +108,7 @@ TEST_CASE("every launch and allocation has a name of ours", "[unit][effects]") {
 TEST_CASE("a steady step allocates nothing", "[unit][effects]") {
   const auto scheme = make_classic(classic());
   Effects effects;
-  effects.add(make_viscosity(real(1e-6)));
+  effects.add(make_viscosity({real(1e-6)}));
   effects.add(make_collision({}));
   effects.add(make_body_force(constant_force(0.1, 0)));
   Fluid fluid = water();
@@ -127,7 +127,7 @@ TEST_CASE("viscosity slows a shear wave as it should", "[unit][effects]") {
   const double k = M_PI / 2, nu = 0.1;
   set_velocity(fluid, [&](double, double y) { return std::array<double, 2>{std::cos(k * y), 0}; });
   clear_acceleration(fluid);
-  make_viscosity(static_cast<real>(nu))->apply(fluid, 1);
+  make_viscosity({static_cast<real>(nu)})->apply(fluid, 1);
   const auto x = host(fluid.particles.position);
   const auto a = host(fluid.particles.acceleration);
   int looked_at = 0;

@@ -62,7 +62,7 @@ struct Close {
       const auto all = load_pack(number, i), self = counted_lanes<IndexPack>() + i;
       for (int k = 0; k < most; ++k) {
         const auto j = select(all > k, load_lanes<IndexPack>(&neighbour(i, k)), self);  // at no distance from itself
-        f(j, convert_lanes_of<Pack>(difference(gather_pack<Dim>(near.x, j), xi)), Itself<Dim>{});
+        f(j, convert_lanes_of<Pack>(way_between(near.grid, xi, gather_pack<Dim>(near.x, j))), Itself<Dim>{});
       }
     }
     if (images(i / pack_lanes)) near.for_each_image(i, f);

@@ -50,9 +50,15 @@ class Effects {
   std::array<std::vector<std::unique_ptr<Effect>>, stages> list_;
 };
 
+struct ViscosityOptions {
+  real kinematic = 0;     // nu [m^2/s]
+  bool measured = false;  // lambda n^0 is what both of a pair really see of it, in place of the lattice's
+};
+
 /// acceleration += nu (2 d / (lambda n^0)) sum_j (u_j - u_i) w_ij (Koshizuka and Oka 1996). At walls of bodies with
-/// no_slip an image moves with 2 u_w - u_j; at others the fluid slips freely. `kinematic`: nu [m^2/s].
-std::unique_ptr<Effect> make_viscosity(real kinematic);
+/// no_slip an image moves with 2 u_w - u_j; at others the fluid slips freely. lambda n^0 is sum w r^2 of the lattice;
+/// particles that lie in disorder see another sum, at any spacing, and `measured` takes the mean of that of the pair.
+std::unique_ptr<Effect> make_viscosity(const ViscosityOptions& options);
 
 struct CollisionOptions {
   real distance = 0.85;    // x spacing: closer than this and approaching, two particles collide
