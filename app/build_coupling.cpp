@@ -44,7 +44,8 @@ std::vector<Structure> build_structures(const Scene& scene) {
     return structures;
   };
   std::vector<Structure> structures = build(1);
-  if (!scene.has_fluid || !scene.mps.adaptive || structures.size() < 2) return structures;
+  const bool steps_differ = scene.has_fluid && (scene.mps.adaptive || scene.mps.undo.halvings > 0);
+  if (!steps_differ || structures.size() < 2) return structures;
   int most = 1;
   for (const Structure& structure : structures) most = std::max(most, structure.substeps());
   return build(most);

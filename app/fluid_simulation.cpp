@@ -64,6 +64,7 @@ FluidSimulation::FluidSimulation(const Scene& scene)
       scheme_(build_scheme(scene, fluid_)),
       step_length_(scene, structures_.empty() ? 0 : structures_.front().march_options().step),
       dt_(step_length_.next(fluid_, std::numeric_limits<double>::infinity())) {
+  if (scene_.mps.undo.halvings > 0) guard_ = std::make_unique<StepGuard>(scene_, walls_move());
   for (const ProbeCase& probe : scene_.probes) {
     const bool of_pressure = probe.kind == "wall_pressure";
     pressure_points_.push_back(of_pressure ? pressure_point(scene_, fluid_.faces, probe) : probe.point);
@@ -76,27 +77,80 @@ FluidSimulation::FluidSimulation(const Scene& scene)
   first_energy_ = energy(fluid_sums(fluid_, potential_zero_));
 }
 
-void FluidSimulation::step() {
+void FluidSimulation::step() { step_of(steps_ > 0 ? step_length_.next(fluid_, dt_) : dt_); }
+
+void FluidSimulation::step_of(double dt) {
   Region region("step");
-  if (steps_ > 0) dt_ = step_length_.next(fluid_, dt_);
+  if (!guard_) return take(dt);
+  guard_->keep(fluid_, coupler_);
+  const std::int64_t steps = steps_;
+  Tries tries{0, dt, 0};
+  for (;;) {
+    try {
+      return take(dt);
+    } catch (const NumericsError& fault) {
+      guard_->put_back(fluid_, coupler_);
+      steps_ = steps;
+      dt = shorter(dt, tries, fault.what());
+    }
+    settle_rows(fluid_);
+  }
+}
+
+void FluidSimulation::take(double dt) {
   if (coupler_.any() && (steps_ + 1) % scene_.output.history_every_steps == 0) coupler_.ask_for_added_mass();
-  last_ = scheme_->step(fluid_, effects_, coupler_, static_cast<real>(dt()));
+  StepReport report = scheme_->step(fluid_, effects_, coupler_, static_cast<real>(dt));
+  if (guard_) guard_->check(fluid_, report);
   ++steps_;
-  fluid_.time = time_after();
-  look_after(last_);
+  if (dt != step_length_.at_rest()) step_length_.let_differ();
+  fluid_.time = time_after(dt);
+  refuse(report);
+  dt_ = dt;
+  look_after(report);
+  last_ = std::move(report);
 }
 
-/// Multiples where all steps are one, sums where they adapt; the end is met exactly.
-double FluidSimulation::time_after() const {
-  if (!scene_.mps.adaptive) return static_cast<accum>(steps_) * dt();
-  const double left = scene_.end - time(), slack = structures_.empty() ? 0 : structures_.front().march_options().step;
-  return left > 0 && dt() >= left - slack ? scene_.end : time() + dt();
+/// The next try after one of `dt` that has failed [s].
+double FluidSimulation::shorter(double dt, Tries& tries, const std::string& fault) {
+  if (tries.failed++ == 0) tries.least = step_length_.allowed(fluid_) * std::exp2(-scene_.mps.undo.halvings);
+  const double half = step_length_.half(dt);
+  require<NumericsError>(
+      half < dt && half >= tries.least, "step ", steps_ + 1, ", t = ", time(), " s: ", fault, "; tried ", tries.failed,
+      " time(s), with ", tries.first, " s down to ", dt,
+      " s, and undone each time: a shorter step does not mend it -> a smaller mps.spacing, or look at "
+      "the last frame for what the flow does there");
+  notices_.push_back({"undone",
+                      text_of("t = ", time(), " s: ", fault, "; the step of ", dt,
+                              " s was undone and is tried again with ", half, " s"),
+                      1, true});
+  return half;
 }
 
-void FluidSimulation::look_after(const StepReport& report) {
+/// Multiples where all steps are one, else sums; the end is then met exactly.
+double FluidSimulation::time_after(double dt) const {
+  return step_length_.differ() ? step_length_.end_of(time(), dt) : static_cast<accum>(steps_) * dt;
+}
+
+/// Throws when the step cannot stay as it is.
+void FluidSimulation::refuse(const StepReport& report) const {
   require<NumericsError>(report.departed.not_a_number == 0, "step ", steps_, ", t = ", time(),
                          " s: ", report.departed.not_a_number,
                          " positions are not a number any more; a smaller mps.time_step may help");
+  if (report.solve.converged || stalls_are_borne(report)) return;
+  throw NumericsError(
+      text_of(stall_text(report), "; a smaller mps.time_step, or mps.pressure.max_iterations larger, may help"));
+}
+
+bool FluidSimulation::stalls_are_borne(const StepReport& report) const {
+  return scene_.mps.pressure.on_stall == "warn" && std::isfinite(report.solve.residual);
+}
+
+std::string FluidSimulation::stall_text(const StepReport& report) const {
+  return text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",
+                 report.solve.iterations, " iterations, relative residual ", report.solve.residual);
+}
+
+void FluidSimulation::look_after(const StepReport& report) {
   retired_ += report.departed.outside;
   if (report.stopped > 0)
     note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
@@ -107,16 +161,10 @@ void FluidSimulation::look_after(const StepReport& report) {
                  scene_.dimension == 2 ? " kg/m" : " kg"),
          report.departed.outside);
   look_after_coupling();
-  if (!report.solve.recovery.empty() && report.solve.converged)
+  if (!report.solve.converged) return note("stall", stall_text(report), 1);
+  if (!report.solve.recovery.empty())
     note("recovery",
          text_of("the pressure solve failed (", report.solve.cause, ") and went on with ", report.solve.recovery), 1);
-  if (report.solve.converged) return;
-  const std::string text =
-      text_of("pressure solve at step ", steps_, ", t = ", time(), " s: ", report.solve.cause, " after ",
-              report.solve.iterations, " iterations, relative residual ", report.solve.residual);
-  require<NumericsError>(scene_.mps.pressure.on_stall == "warn" && std::isfinite(report.solve.residual), text,
-                         "; a smaller mps.time_step, or mps.pressure.max_iterations larger, may help");
-  note("stall", text, 1);
 }
 
 void FluidSimulation::look_after_coupling() {
@@ -240,7 +288,7 @@ std::vector<WallShape> FluidSimulation::wall_shapes() const {
 }
 
 Picture FluidSimulation::picture() const {
-  Picture picture{{fluid_table()}, wall_shapes(), coupler_.any() || !effects_.at(Stage::walls).empty(), {}};
+  Picture picture{{fluid_table()}, wall_shapes(), walls_move(), {}};
   for (const Structure& structure : structures_) picture.solids.push_back(structure.picture());
   return picture;
 }

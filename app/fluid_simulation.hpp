@@ -4,6 +4,7 @@
 #include "app/build.hpp"
 #include "app/build_coupling.hpp"
 #include "app/simulation.hpp"
+#include "app/step_guard.hpp"
 #include "app/step_length.hpp"
 #include "kernels/sample.hpp"
 
@@ -14,9 +15,13 @@ class FluidSimulation : public Simulation {
   /// Throws CaseError when the scene cannot be built.
   explicit FluidSimulation(const Scene& scene);
 
-  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn) or meets
-  /// a number that is none; the state is then that of the failed step.
+  /// One fluid step, t to t + dt. Throws NumericsError when the pressure solve stalls (unless the case says warn), meets
+  /// a number that is none, or the step breaks another of its limits: where steps can be undone when shorter ones fail too,
+  /// with the state before the step; else at once, with that of the failed step.
   void step() override;
+  /// The same with a first try of that length [s], which must not lead beyond the end of the run: a multiple of the
+  /// structures' substep.
+  void step_of(double dt);
 
   double time() const override { return fluid_.time; }
   std::int64_t steps() const override { return steps_; }
@@ -47,7 +52,18 @@ class FluidSimulation : public Simulation {
 
  private:
   void note(const std::string& kind, const std::string& text, std::int64_t count);
-  double time_after() const;
+  /// Of one step.
+  struct Tries {
+    int failed = 0;
+    double first = 0, least = 0;  // the first one, and the shortest that is allowed [s]
+  };
+  void take(double dt);
+  double shorter(double dt, Tries& tries, const std::string& fault);
+  double time_after(double dt) const;
+  void refuse(const StepReport& report) const;
+  bool stalls_are_borne(const StepReport& report) const;
+  std::string stall_text(const StepReport& report) const;
+  bool walls_move() const { return coupler_.any() || !effects_.at(Stage::walls).empty(); }
   void look_after(const StepReport& report);
   void look_after_coupling();
   void add_ledger(std::vector<double>& row) const;
@@ -62,6 +78,7 @@ class FluidSimulation : public Simulation {
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;
   StepLength step_length_;
+  std::unique_ptr<StepGuard> guard_;  // none where no step is undone
   double dt_ = 0;
   PointSampler sampler_;
   std::vector<Point> pressure_points_;                  // of each probe; only those of pressure probes mean anything

@@ -195,6 +195,9 @@ int Run::finish(const RunEnd& end, Marker marker, const char* state) {
 int Run::fail(const Failure& failure) {
   std::cerr << failure.message << '\n';
   try {
+    if (failure.code == 3) {
+      for (const Notice& notice : simulation_->run_facts().notices) log_.warn(notice, simulation_->steps());
+    }
     log_.note(failure.message);
     if (failure.code == 3) recorder_.last_frame(*simulation_);
   } catch (const std::exception& again) {

@@ -133,6 +133,13 @@ struct DefaultSchemeCase {     // and of scheme high
   double diagonal_factor = 1;  // the paper's C, for comparison
 };
 
+/// When a step is undone and made again with half of its length.
+struct UndoCase {
+  int halvings = 8;         // of the step that the flow allows, at most; 0: nothing is kept and nothing looked at
+  double displacement = 1;  // x spacing: no particle goes further in a step, but drops that fly by themselves
+  double distance = 0.2;    // x spacing: no two run together to less in a step; 0: not looked at
+};
+
 struct MpsCase {
   std::string scheme = "default";
   DefaultSchemeCase parts;  // of scheme default
@@ -154,6 +161,7 @@ struct MpsCase {
   double compressibility = 4.5e-10;  // [1/Pa] of water; keeps closed clusters regular
   double free_surface_ratio = 0.97;  // n < ratio n0 is the surface
   PressureCase pressure;
+  UndoCase undo;
 };
 
 /// Where a structure is held, and how what holds it moves.

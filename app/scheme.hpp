@@ -17,6 +17,7 @@ struct StepReport {
   SolveReport solve;
   int stopped = 0;                               // ways that crossed a wall and were stopped there
   Departed departed;                             // particles that left the domain
+  real nearest = 0;                              // how near two particles came to each other [m]; 0: nobody has looked
   std::vector<std::array<double, 3>> reactions;  // on the bodies that are watched, in their order [N/m], 3-D: [N]
 };
 

@@ -44,7 +44,7 @@ class Default : public Scheme {
     report.stopped = advance(fluid, survey_, dt);
     effects.run(Stage::walls, fluid, dt);
     coupler.place_walls(fluid, dt);
-    if (separation_) keep_apart(fluid, dt);
+    if (separation_) report.nearest = keep_apart(fluid, dt);
     effects.run(Stage::after_move, fluid, dt);
     coupler.finish(fluid, dt);
     return report;
@@ -104,15 +104,17 @@ class Default : public Scheme {
     return solver_->solve_again(pressure_, fluid.particles.pressure);
   }
 
-  void keep_apart(Fluid& fluid, real dt) {
+  // Returns how near two have come to each other [m].
+  real keep_apart(Fluid& fluid, real dt) {
     Region region("separation");
     separation_->apply(fluid, dt);
+    return separation_->nearest();
   }
 
   DefaultOptions options_;
   PressureSystem pressure_;
   std::unique_ptr<PressureSolver> solver_;
-  std::unique_ptr<Effect> separation_;
+  std::unique_ptr<Collision> separation_;
   LatticeTable table_{};
   Survey survey_;
   std::vector<int> watched_;  // bodies whose reaction is wanted

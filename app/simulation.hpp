@@ -37,7 +37,8 @@ class Simulation {
  public:
   virtual ~Simulation() = default;
 
-  /// From t to t + dt. Throws NumericsError when it cannot go on; the state is then that of the failed step.
+  /// From t to t + dt. Throws NumericsError when it cannot go on; the state is then that before the step where steps can be
+  /// undone, else that of the failed one.
   virtual void step() = 0;
   virtual double time() const = 0;
   virtual std::int64_t steps() const = 0;

@@ -23,6 +23,7 @@ double step_at_rest(const Scene& scene) {
 
 StepLength::StepLength(const Scene& scene, double quantum)
     : adaptive_(scene.mps.adaptive),
+      differ_(scene.mps.adaptive),
       at_rest_(step_at_rest(scene)),
       end_(scene.end),
       way_(scene.mps.courant * scene.mps.spacing),
@@ -33,11 +34,22 @@ StepLength::StepLength(const Scene& scene, double quantum)
 }
 
 double StepLength::next(const Fluid& fluid, double previous) const {
-  if (!adaptive_) return at_rest_;
-  const double dt = whole(slow_enough(fluid, std::min(at_rest_, growth_ * previous)));
+  if (!differ_) return at_rest_;
+  const double grown = std::max(growth_ * previous, previous + quantum_);  // of few quanta a tenth is none
+  const double longest = std::min(at_rest_, grown);
+  const double dt = whole(adaptive_ ? slow_enough(fluid, longest) : longest);
   const double left = end_ - fluid.time;
   if (left <= 0 || left >= 2 * dt) return dt;
   return left <= dt ? whole(left) : whole(left / 2);
+}
+
+double StepLength::allowed(const Fluid& fluid) const {
+  return adaptive_ ? whole(slow_enough(fluid, at_rest_)) : at_rest_;
+}
+
+double StepLength::end_of(double time, double dt) const {
+  const double left = end_ - time;
+  return left > 0 && std::abs(dt - left) <= quantum_ ? end_ : time + dt;
 }
 
 /// The multiple below, one at least.

@@ -283,6 +283,31 @@ void Coupler::finish(const Fluid& fluid, double dt) {
   }
 }
 
+void Coupler::keep(State& state) const {
+  state.lasting.resize(bodies_.size());
+  state.marches.resize(bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    state.lasting[k] = bodies_[k];
+    state.marches[k] = bodies_[k].body.march->state();
+  }
+  state.relaxation = relaxation_;
+  state.passes = passes_;
+  state.disagreed = disagreed_;
+  state.weighs = weighs_;
+}
+
+void Coupler::put_back(const State& state) {
+  expect(state.lasting.size() == bodies_.size());
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    static_cast<Lasting&>(bodies_[k]) = state.lasting[k];
+    bodies_[k].body.march->set_state(state.marches[k]);
+  }
+  relaxation_ = state.relaxation;
+  passes_ = state.passes;
+  disagreed_ = state.disagreed;
+  weighs_ = state.weighs;
+}
+
 void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver) {
   constexpr double strong = 1e9;  // m/s^2, so that no absolute tolerance of the solver is met
   weighs_ = false;

@@ -60,6 +60,12 @@ class Coupler {
   /// dry mode gives the pressure against them, and that the added mass of the mode.
   void weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver);
 
+  /// What lasts from step to step, that of the structures' marches too: to be kept and put back when a step is undone.
+  struct State;
+  void keep(State& state) const;
+  /// Walls are another's to put back.
+  void put_back(const State& state);
+
   const ElasticBody& body(std::size_t k) const { return bodies_[k].body; }
   /// Forces of the fluid on the corners of a structure [N/m], in 3-D [N].
   const Eigen::VectorXd& loads(std::size_t k) const { return bodies_[k].load; }
@@ -74,23 +80,26 @@ class Coupler {
   std::string alarm() const;
 
  private:
-  struct Coupled {
-    Coupled(ElasticBody given, const WallFaces& walls, int first);
-
-    ElasticBody body;
-    int first_unknown = 0;
+  /// Of one structure, what lasts from step to step beside its march.
+  struct Lasting {
     Eigen::VectorXd placed;   // displacement of the corners where the walls stand [m]
     Eigen::VectorXd base;     // speeds in the right side of the solve [m/s]
     Eigen::VectorXd speed;    // of the walls in this step [m/s]
     Eigen::VectorXd before;   // in the last one
     Eigen::VectorXd load;     // on the corners
     Eigen::VectorXd applied;  // that under which the structure has gone through this step
-    StructureAnswer answer;   // C
-    Eigen::VectorXd mode;     // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
     double added_mass = std::numeric_limits<double>::quiet_NaN();  // over the structure's
-    March::State start;                                            // of this step
-    March::State foreseen;                                         // at its end, under the load of the last one
     InterfaceLedger ledger;
+  };
+  struct Coupled : Lasting {
+    Coupled(ElasticBody given, const WallFaces& walls, int first);
+
+    ElasticBody body;
+    int first_unknown = 0;
+    StructureAnswer answer;  // C
+    Eigen::VectorXd mode;    // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
+    March::State start;      // of this step
+    March::State foreseen;   // at its end, under the load of the last one
     CornerMotion motion;
     Exchange<CoordField> velocity, acceleration;
   };
@@ -121,6 +130,14 @@ class Coupler {
   Eigen::VectorXd last_residual_;
   double relaxation_ = 0;
   bool weighs_ = false;
+};
+
+struct Coupler::State {
+  std::vector<Lasting> lasting;  // of each structure
+  std::vector<March::State> marches;
+  double relaxation = 0;
+  int passes = 0;
+  bool disagreed = false, weighs = false;
 };
 
 }  // namespace greenwater

@@ -92,7 +92,7 @@ March::March(const Solid& solid, Supports supports, Loads loads, const MarchOpti
   const Eigen::Index n = solid_.unknowns();
   now_.time = options_.start;
   now_.u = or_zero(displacement, n);
-  now_.held = given_ = place_ = drag_ = inner_ = outer_ = reaction_ = next_held_ = Eigen::VectorXd::Zero(n);
+  now_.held = now_.reaction = given_ = place_ = drag_ = inner_ = outer_ = next_held_ = Eigen::VectorXd::Zero(n);
   keep_ = Eigen::VectorXd::Constant(n, (1 - alpha * h / 2) / (1 + alpha * h / 2));
   push_ = h / (1 + alpha * h / 2) * solid_.mass().cwiseInverse();
   for (const int i : supports_.held) keep_[i] = push_[i] = 0;
@@ -181,7 +181,7 @@ void March::kick() {
 }
 
 void March::update_reaction() {
-  for (const int i : supports_.held) reaction_[i] = inner_[i] - outer_[i] + drag_[i];
+  for (const int i : supports_.held) now_.reaction[i] = inner_[i] - outer_[i] + drag_[i];
 }
 
 Energies March::energies() const {

@@ -42,6 +42,7 @@ class March {
     Eigen::VectorXd u;                         // displacement [m]
     Eigen::VectorXd v;                         // velocity half a step back [m/s]
     Eigen::VectorXd held;                      // load held over the last call of advance() [N]
+    Eigen::VectorXd reaction;                  // of the supports in the last step [N]
     double lost = 0, loads = 0, supports = 0;  // see Energies
     Contact::State contact;                    // empty without
   };
@@ -70,7 +71,7 @@ class March {
   const Eigen::VectorXd& velocity() const { return now_.v; }
   Energies energies() const;
   /// Force of the supports on the structure in the last step, for each unknown; 0 where it is free [N].
-  const Eigen::VectorXd& reaction() const { return reaction_; }
+  const Eigen::VectorXd& reaction() const { return now_.reaction; }
 
  private:
   void start(const Eigen::VectorXd& velocity);
@@ -90,7 +91,7 @@ class March {
   Eigen::VectorXd given_;  // velocity of moving supports [m/s], 0 elsewhere
   Eigen::VectorXd place_;  // where moving supports are next [m]
   Eigen::VectorXd drag_;   // force that moves them: M (a + alpha v) [N]
-  Eigen::VectorXd inner_, outer_, reaction_, next_held_;
+  Eigen::VectorXd inner_, outer_, next_held_;
 };
 
 }  // namespace greenwater

@@ -73,13 +73,14 @@ void Log::progress(const Progress& progress) {
 }
 
 void Log::warn(const Notice& notice, std::int64_t step) {
+  const std::string line = fmt::format("W {:6d}  {}", step, notice.text);
   for (Counted& known : counted_) {
     if (known.kind != notice.kind) continue;
     known.count += notice.count;
+    if (notice.each) note(line);
     return;
   }
   counted_.push_back({notice.kind, notice.count, step});
-  const std::string line = fmt::format("W {:6d}  {}", step, notice.text);
   if (options_.verbosity != Verbosity::quiet) to_terminal(line, yellow);
   to_file(line);
 }

@@ -45,7 +45,7 @@ class Log {
   void thermo(const std::string& header, const std::string& line);
   /// The live line; may be called every step.
   void progress(const Progress& progress);
-  /// The first of each kind is printed, all are counted.
+  /// The first of each kind is printed, all are counted; run.log also gets the others where each is worth it.
   void warn(const Notice& notice, std::int64_t step);
 
   /// One line per kind of warning, for the end.

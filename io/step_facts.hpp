@@ -12,6 +12,7 @@ struct Notice {
   std::string kind;  ///< short and always the same: cfl, stall, crossing
   std::string text;  ///< the whole sentence, with its numbers
   std::int64_t count = 1;
+  bool each = false;  ///< not only the first of its kind is worth a line of the log
 };
 
 /// What any run tells after a step, ready for the log and for history.csv.

@@ -259,6 +259,29 @@ TEST_CASE("where steps adapt nothing is too fast for them but a jump", "[unit][c
   CHECK(!contains(fixed.resolved(), "courant"));
 }
 
+TEST_CASE("steps can be undone, in the classic scheme only where it is asked for", "[unit][case]") {
+  const auto undo_of = [](const std::vector<std::string>& settings, std::string* resolved = nullptr) {
+    std::vector<CaseOption> options;
+    for (const std::string& setting : settings) options.push_back(set_option(setting));
+    CaseFile file(small_case(), "a.toml", options);
+    const Scene scene = read_scene(file);
+    if (resolved) *resolved = file.resolved();
+    return scene.mps.undo;
+  };
+  std::string resolved, classic;
+  CHECK(undo_of({}, &resolved).halvings == 8);
+  CHECK(contains(resolved, "[mps.undo]"));
+  CHECK(contains(resolved, "displacement = 1.0  # x spacing; default"));
+  CHECK(contains(resolved, "distance = 0.2  # x spacing; default"));
+  CHECK(undo_of({"mps.scheme=classic"}, &classic).halvings == 0);
+  CHECK(!contains(classic, "displacement = 1"));
+  CHECK(undo_of({"mps.scheme=classic", "mps.undo.halvings=3", "mps.undo.distance=0"}).distance == 0);
+  CHECK(undo_of({"mps.adaptive=true"}).displacement == 1);
+  CHECK(undo_of({"mps.adaptive=true", "mps.courant=0.8"}).displacement == Approx(1.6));
+  CaseFile again(resolved, "b.toml", {});
+  CHECK(read_scene(again).mps.undo.halvings == 8);
+}
+
 TEST_CASE("polylines come from files, and are filled to a level", "[unit][case]") {
   const TemporaryFolder folder;
   write_text(folder / "hull.csv", "x,y\n0.0,0.3\n0.2,0.0\n0.4,0.3\n");
@@ -419,6 +442,16 @@ TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
       {"spacing = 0.02", "spacing = 0.02\nadaptive = true\ngrowth = 1", "growth = 1.0 must be above 1"},
       {"spacing = 0.02", "spacing = 0.02\nadaptive = true\ncourant = 2", "courant = 2.0 must be at most 1"},
       {"spacing = 0.02", "spacing = 0.02\nadaptve = true", "did you mean \"adaptive\"?"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.halvings = -1", "halvings = -1"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.halvings = 51", "at most 50"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.halving = 3", "did you mean \"halvings\"?"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.displacement = 0", "displacement = 0.0 [x spacing] must be above 0"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.displacement = 2.5", "displacement = 2.5 [x spacing] must be at most 2"},
+      {"spacing = 0.02", "spacing = 0.02\nundo.distance = 0.6", "distance = 0.6 [x spacing] must be at most 0.5"},
+      {"spacing = 0.02", "spacing = 0.02\nundo = { halvings = 0, distance = 0.1 }", "with halvings = 0 none is"},
+      {"spacing = 0.02", "spacing = 0.02\nscheme = \"classic\"\nundo.displacement = 0.5",
+       "give halvings, or delete it"},
+      {"spacing = 0.02", "spacing = 0.02\nadaptive = true\nundo.displacement = 0.2", "would undo every step"},
       {"base = [0.3, 0.0]", "base = [0.5, 0.0]", "not inside the box"},
       {"base = [0.3, 0.0]", "base = [0.3]", "needs 2 components"},
       {"open = [\"top\"]", "open = [\"top\", \"up\"]", "open cannot be \"up\""},

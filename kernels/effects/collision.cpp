@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "kernels/effects/effect.hpp"
 
 namespace greenwater {
@@ -17,14 +19,18 @@ struct Close {
   ScalarField way;           // (i) how far it has gone since lists with it were made, at most [m]
   IndexField stale;          // (pack) whether its lists are to be made anew
 
-  /// Lists neighbours and images of a pack of particles that are closer than `distance`.
-  KOKKOS_INLINE_FUNCTION void find(int i, real distance) const {
+  /// Lists neighbours and images of a pack of particles that are closer than `distance`. Returns the square of the distance
+  /// of the nearest neighbour that it has listed, or else of `distance` [m^2].
+  KOKKOS_INLINE_FUNCTION real find(int i, real distance) const {
     int found[pack_lanes] = {};
+    real nearest2 = distance * distance;
     near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto&) {
-      const unsigned bits = lane_bits(dot(r, r) < distance * distance);
+      const Pack r2 = dot(r, r);
+      const unsigned bits = lane_bits(r2 < distance * distance);
       if (bits == 0) return;
       for (int l = 0; l < pack_lanes; ++l) {
         if (!(bits >> l & 1)) continue;
+        nearest2 = smaller(nearest2, lane(r2, l));
         if (found[l] < most_close) neighbour(i + l, found[l]) = lane(j, l);
         ++found[l];
       }
@@ -35,6 +41,7 @@ struct Close {
       any = any || any_lane(dot(r, r) < distance * distance);
     });
     images(i / pack_lanes) = any;
+    return nearest2;
   }
 
   /// Tells everybody around those of a pack of particles that have gone too far.
@@ -89,14 +96,19 @@ KOKKOS_INLINE_FUNCTION void for_each_collision(const Close<Dim>& close, const Re
   });
 }
 
+// Returns the square of the distance of the nearest two, or of `distance` [m^2].
 template <int Dim>
-void find_close_in(const Close<Dim>& close, real distance, int count) {
-  Kokkos::parallel_for(
-      "greenwater::collision_find_close", packs(count), KOKKOS_LAMBDA(const int pack) {
-        close.find(pack * pack_lanes, distance);
+real find_close_in(const Close<Dim>& close, real distance, int count) {
+  real nearest2 = 0;
+  Kokkos::parallel_reduce(
+      "greenwater::collision_find_close", packs(count),
+      KOKKOS_LAMBDA(const int pack, real& least) {
+        least = smaller(least, close.find(pack * pack_lanes, distance));
         store_lanes(&close.way(pack * pack_lanes), Pack{});
         close.stale(pack) = 0;
-      });
+      },
+      Kokkos::Min<real>(nearest2));
+  return nearest2;
 }
 
 // The same where somebody came or went farther than `too_far`.
@@ -180,9 +192,9 @@ real move_on_in(const Fluid& fluid, const VectorField& du, real dt, const Scalar
   return longest;
 }
 
-class Collision : public Effect {
+class Bouncing : public Collision {
  public:
-  explicit Collision(const CollisionOptions& options) : options_(options) {}
+  explicit Bouncing(const CollisionOptions& options) : options_(options) {}
   std::string_view name() const override { return "collision"; }
   Stage stage() const override { return Stage::after_move; }
   void apply(Fluid& fluid, real dt) override {
@@ -198,6 +210,7 @@ class Collision : public Effect {
     }
     p.dim == 2 ? apply_in<2>(fluid, dt) : apply_in<3>(fluid, dt);
   }
+  real nearest() const override { return nearest_; }
 
  private:
   template <int Dim>
@@ -206,7 +219,7 @@ class Collision : public Effect {
     const real distance = options_.distance * static_cast<real>(fluid.spacing), margin = distance / 10;
     const int count = fluid.particles.count;
     const Close<Dim> close = {around<Dim>(fluid), close_, neighbour_, images_, way_, stale_};
-    find_close_in(close, distance + margin, count);
+    nearest_ = std::sqrt(find_close_in(close, distance + margin, count));
     for (int sweep = 1; count_collisions_in(close, fluid, distance, number_) > 0; ++sweep) {
       collide_in(close, fluid, distance, options_.restitution, number_, du_);
       const real longest = move_on_in<Dim>(fluid, du_, dt, way_);
@@ -216,6 +229,7 @@ class Collision : public Effect {
   }
 
   CollisionOptions options_;
+  real nearest_ = 0;   // [m]
   IndexField number_;  // (i) of collisions
   IndexField close_;
   NeighbourLists neighbour_;
@@ -227,6 +241,8 @@ class Collision : public Effect {
 
 }  // namespace
 
-std::unique_ptr<Effect> make_collision(const CollisionOptions& options) { return std::make_unique<Collision>(options); }
+std::unique_ptr<Collision> make_collision(const CollisionOptions& options) {
+  return std::make_unique<Bouncing>(options);
+}
 
 }  // namespace greenwater

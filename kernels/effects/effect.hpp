@@ -66,9 +66,17 @@ struct CollisionOptions {
   int sweeps = 5;          // at most: who bounces off a wall may meet the next one behind
 };
 
+/// An effect that has seen how near particles came to each other.
+class Collision : public Effect {
+ public:
+  /// The smallest distance of two particles before the last apply() held them apart [m]; of those that are not closer than
+  /// collisions any large number.
+  virtual real nearest() const = 0;
+};
+
 /// Particles that come too close bounce: their normal approach speed U becomes -restitution U, shared evenly, and they
 /// move on with the change. A particle in several collisions at once takes the mean of them, so that no energy is made.
-std::unique_ptr<Effect> make_collision(const CollisionOptions& options);
+std::unique_ptr<Collision> make_collision(const CollisionOptions& options);
 
 /// A force per mass [m/s^2] at a place [m], for a velocity [m/s] and a time [s].
 using ForceField =
