@@ -121,6 +121,7 @@ Scene read_scene(CaseFile& file) {
   scene.has_fluid = root.offers("fluid") || !root.offers("structure");
   scene.has_fluid ? read_water(root, scene) : read_step_alone(root, scene);
   read_structures(root, scene);
+  if (scene.has_fluid) read_undo(root.table("mps").table("undo"), scene);
   read_output(root.table("output"), scene.output);
   read_probes(root, scene);
   file.finish();

@@ -33,30 +33,6 @@ void read_pressure(Section section, bool classic, PressureCase& options) {
   if (classic) options.source = section.choice("source", {"density", "divergence"}, options.source);
 }
 
-// Rows of neighbours end there, so that beyond it nobody would be seen to run together.
-constexpr double most_displacement = 2;  // x spacing
-
-void read_undo(Section section, const MpsCase& mps, UndoCase& options) {
-  constexpr std::int64_t most_halvings = 50;
-  if (mps.scheme == "classic") options.halvings = 0;  // the paper's step is what it is
-  options.halvings = small_count(section, "halvings", 0, options.halvings);
-  require_at(section.place("halvings"), options.halvings <= most_halvings, "halvings = ", options.halvings,
-             " leaves nothing of a step: at most ", most_halvings);
-  for (const char* key : {"displacement", "distance"}) {
-    require_at(section.place(key), !section.offers(key) || options.halvings > 0, key,
-               " says when a step is undone, and with halvings = 0 none is; give halvings, or delete it");
-  }
-  if (options.halvings == 0) return;
-  // The bulk goes courant, and what is faster than it some twice as far.
-  if (mps.adaptive) options.displacement = std::max(options.displacement, most_displacement * mps.courant);
-  options.displacement =
-      section.number("displacement", "x spacing", Bounds{0, most_displacement, false}, options.displacement);
-  require_at(section.place("displacement"), !mps.adaptive || options.displacement > mps.courant,
-             "displacement = ", options.displacement, " would undo every step of courant = ", mps.courant,
-             "; it has to be more than that, and is best some four times as much");
-  options.distance = section.number("distance", "x spacing", between(0, 0.5), options.distance);
-}
-
 double not_zero(Section& section, const std::string& key, double value) {
   require_at(section.place(key), value != 0, key, " = 0 is no effect: leave the table ", section.header(), " out");
   return value;
@@ -164,7 +140,32 @@ void read_mps(Section mps, Scene& scene) {
   const bool classic = options.scheme == "classic";
   (classic ? read_classic_scheme : read_default_scheme)(mps, scene.dimension, options);
   read_pressure(mps.table("pressure"), classic, options.pressure);
-  read_undo(mps.table("undo"), options, options.undo);
+}
+
+void read_undo(Section section, Scene& scene) {
+  constexpr std::int64_t most_halvings = 50;
+  constexpr double most_displacement = 2;  // x spacing: rows would not see who runs together beyond it
+  const MpsCase& mps = scene.mps;
+  UndoCase& options = scene.mps.undo;
+  // The paper's step is what it is, and a march that staggering makes unstable is so in every step, however short.
+  const bool staggered = !scene.structures.empty() && scene.coupling.scheme == "staggered";
+  if (mps.scheme == "classic" || staggered) options.halvings = 0;
+  options.halvings = small_count(section, "halvings", 0, options.halvings);
+  require_at(section.place("halvings"), options.halvings <= most_halvings, "halvings = ", options.halvings,
+             " leaves nothing of a step: at most ", most_halvings);
+  for (const char* key : {"displacement", "distance"}) {
+    require_at(section.place(key), !section.offers(key) || options.halvings > 0, key,
+               " says when a step is undone, and with halvings = 0 none is; give halvings, or delete it");
+  }
+  if (options.halvings == 0) return;
+  // The bulk goes courant, and what is faster than it some twice as far.
+  if (mps.adaptive) options.displacement = std::max(options.displacement, 2 * mps.courant);
+  options.displacement =
+      section.number("displacement", "x spacing", Bounds{0, most_displacement, false}, options.displacement);
+  require_at(section.place("displacement"), !mps.adaptive || options.displacement > mps.courant,
+             "displacement = ", options.displacement, " would undo every step of courant = ", mps.courant,
+             "; it has to be more than that, and is best some four times as much");
+  options.distance = section.number("distance", "x spacing", between(0, 0.5), options.distance);
 }
 
 void read_effects(Section effects, Scene& scene) {

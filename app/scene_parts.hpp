@@ -12,6 +12,7 @@ namespace greenwater {
 void read_geometry(Section root, Scene& scene);         // [geometry.NAME]
 void read_fluid(Section root, Scene& scene);            // [[fluid]]
 void read_mps(Section mps, Scene& scene);               // [mps], [mps.pressure]
+void read_undo(Section undo, Scene& scene);             // [mps.undo], after all others
 void read_effects(Section effects, Scene& scene);       // [effects.NAME]
 void read_output(Section output, OutputCase& options);  // [output]
 void read_probes(Section root, Scene& scene);           // [[probe]]

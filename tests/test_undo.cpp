@@ -418,6 +418,16 @@ TEST_CASE("where no step is undone nothing is kept or looked at, and where one i
   CHECK(!ears.allocated("_copy"));
 }
 
+TEST_CASE("a march that staggering may make unstable is not undone unless it is asked for", "[unit][undo]") {
+  const auto halvings = [](const std::vector<std::string>& settings) {
+    return scene_of_text(on_elastic_plate, options_of(settings)).mps.undo.halvings;
+  };
+  CHECK(halvings({}) == 8);
+  CHECK(halvings({"coupling.scheme=aitken"}) == 8);
+  CHECK(halvings({"coupling.scheme=staggered"}) == 0);
+  CHECK(halvings({"coupling.scheme=staggered", "mps.undo.halvings=2"}) == 2);
+}
+
 TEST_CASE("what is kept of a step is kept in the same memory", "[unit][undo]") {
   const std::string wet = "fluid.0.region={type=\"box\", min=[0.4, 0], max=[0.7, 0.2]}";
   FluidSimulation simulation(scene_of_text(on_elastic_plate, options_of({wet})));
