@@ -20,6 +20,8 @@ constexpr double bytes_per_particle = 400, bytes_of_third_axis = 64;
 constexpr double bytes_per_neighbor = 4, bytes_per_weight = 4;
 // The multigrid: vectors of the particles (65), windows (80), cells and levels (75); with a third axis larger stencils.
 constexpr double bytes_of_multigrid = 220, bytes_of_multigrid_third_axis = 130;
+// What a step that can be undone starts from: all fields once more, and where each particle is.
+constexpr double bytes_of_undo = 75, bytes_of_undo_third_axis = 24;
 constexpr double row_growth = 1.5;                           // rows grow ahead of need
 constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
 constexpr double frame_bytes_third_axis = 8;                 // of position and velocity; VTP has three always
@@ -36,6 +38,7 @@ double memory_of(const Scene& scene, double particles) {
   double fields = bytes_per_particle + (scene.dimension == 3 ? bytes_of_third_axis : 0);
   if (scene.mps.pressure.preconditioner == "multigrid")
     fields += bytes_of_multigrid + (scene.dimension == 3 ? bytes_of_multigrid_third_axis : 0);
+  if (scene.mps.undo.halvings > 0) fields += bytes_of_undo + (scene.dimension == 3 ? bytes_of_undo_third_axis : 0);
   return particles * (fields + row_growth * neighbors * entry);
 }
 
