@@ -8,6 +8,7 @@ namespace {
 
 constexpr real poor = real(0.15), fair = real(0.35);  // of a stencil: 1 when round, 0 when particles are in a line
 constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the drift term answers to
+constexpr real largest_bend = real(0.05);             // of a volume in one step, by what is of second order in the step
 constexpr real crowd_margin = real(0.05);             // of 1 - n / n^0: who is crowded may lack that much less
 constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
 
@@ -72,7 +73,7 @@ struct Surveyor {
   ShiftFunction shift;
   LatticeTable table;
   Survey out;
-  real n0, l0, touching, nearest2, K, per_dt, curving, drift, step, longest, g[3];
+  real n0, l0, touching, nearest2, K, per_dt, curving, most_turn, drift, step, longest, g[3];
 
   KOKKOS_INLINE_FUNCTION Sums<Dim> sums(int i) const {
     Sums<Dim> sum;
@@ -145,6 +146,7 @@ struct Surveyor {
     Pack turn{};  // tr (grad u)^2
     for (int d = 0; d < Dim; ++d)
       for (int e = 0; e < Dim; ++e) turn += grad[d][e] * grad[e][d];
+    turn = smaller(larger(turn, all_lanes<Pack>(-most_turn)), all_lanes<Pack>(most_turn));
 
     if (out.divergence_correction.extent(0) > 0)
       for (int k = 0; k < Symmetric<Dim, Pack>::size; ++k) store_lanes(&out.divergence_correction(i, k), C.c[k]);
@@ -216,6 +218,7 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
                                  2 * Dim / (lattice.lambda * lattice.n0),
                                  rho / dt,
                                  options.keeps_volume ? rho / 2 : real(0),
+                                 2 * largest_bend / (dt * dt),
                                  rho * (options.drift_speed / l0) * (options.drift_speed / l0),
                                  options.shift_rate * table.shift,
                                  options.shift_limit * l0,
