@@ -1,4 +1,4 @@
-"""The stretching drop in 3-D: it stays an ellipsoid of constant volume, and its axes follow ordinary differential equations."""
+"""The stretching drop in 3-D: it stays an ellipsoid of constant volume, whose axes follow ordinary differential equations."""
 import math
 
 import numpy
