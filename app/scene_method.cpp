@@ -90,17 +90,18 @@ void set_radii(MpsCase& options, double radius) {
 
 void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
   constexpr double least_radius = 2.05;  // x spacing: a second row tells where the surface is
+  constexpr double smoothing_of_high = 0.1;
   refuse_keys(mps, classic_keys, "classic", "delete it, or take that scheme");
   options.kernel = "standard";
   const double usual = dimension == 3 ? usual_radius_3d : options.radius_laplacian;
   set_radii(options, mps.number("radius", "x spacing", between(least_radius, most_radius), usual));
   const bool high = options.scheme == "high";
-  Section section = mps.table(options.scheme);
-  refuse_keys(mps, {high ? "default" : "high"}, high ? "default" : "high", "delete it, or take that scheme");
+  Section section = mps.table("default");
   DefaultSchemeCase& parts = options.parts;
   parts.reference_speed = section.number("reference_speed", "m/s", at_least(0), parts.reference_speed);
   parts.drift = section.number("drift", "-", at_least(0), parts.drift);
   parts.shifting = section.number("shifting", "-", at_least(0), parts.shifting);
+  if (high) parts.smoothing = smoothing_of_high;
   parts.smoothing = section.number("smoothing", "-", at_least(0), parts.smoothing);
   parts.surface_smoothing = section.number("surface_smoothing", "-", at_least(0), parts.surface_smoothing);
   parts.diagonal_factor = section.number("diagonal_factor", "-", at_least(1), parts.diagonal_factor);
@@ -109,7 +110,7 @@ void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
 
 void read_classic_scheme(Section& mps, int dimension, MpsCase& options) {
   constexpr double least_radius = 1.1;  // x spacing: neighbours at all
-  refuse_keys(mps, {"radius", "default", "high"}, "default",
+  refuse_keys(mps, {"radius", "default"}, "default",
               "classic has a radius for each of its sums: radius_density, ...");
   if (dimension == 3) set_radii(options, usual_radius_3d);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);

@@ -5,8 +5,8 @@ import math
 class Limit:
     """A range that a figure must lie in, and how the table says it."""
 
-    def __init__(self, low, high, text):
-        self.low, self.high, self.text = low, high, text
+    def __init__(self, low, high, text, reference=None):
+        self.low, self.high, self.text, self.reference = low, high, text, reference
 
     def holds(self, value):
         return self.low <= value <= self.high
@@ -17,6 +17,10 @@ def below(most):
     return Limit(-most, most, f"< {number(most)}")
 
 
+def at_least(least):
+    return Limit(least, math.inf, f">= {number(least)}")
+
+
 def at_most(most):
     return Limit(-math.inf, most, f"<= {number(most)}")
 
@@ -24,7 +28,7 @@ def at_most(most):
 def near(reference, part):
     """Within this part of the reference."""
     room = abs(reference) * part
-    return Limit(reference - room, reference + room, f"{number(reference)} ± {100 * part:g} %")
+    return Limit(reference - room, reference + room, f"{number(reference)} ± {100 * part:g} %", reference)
 
 
 def between(low, high):
@@ -40,6 +44,11 @@ class Figure:
     def misses(self):
         return self.limit is not None and not self.limit.holds(self.value)
 
+    def error(self):
+        """As a text: how far it is off the reference of its limit, where that has one; else the figure itself."""
+        reference = self.limit.reference if self.limit else None
+        return f"{100 * (self.value / reference - 1):+.2g} %" if reference else number(self.value)
+
     def verdict(self):
         if self.limit is None:
             return ""
@@ -52,14 +61,19 @@ def number(value):
 
 
 def table(figures, beside):
-    """Rows of text: each figure with its limit, and the classic scheme's value where it has one."""
-    classic = {figure.name: figure for figure in beside}
-    rows = [["figure", "value", "limit", "", "classic"]]
+    """Rows of text: each figure with its limit, and its values with other schemes; `beside`: their figures by name."""
+    others = {scheme: {figure.name: figure for figure in found} for scheme, found in beside.items()}
+    rows = [["figure", "value", "limit", "", *others]]
+
+    def values_beside(name):
+        return [number(found[name].value) if name in found else "" for found in others.values()]
+
     for figure in figures:
-        other = classic.pop(figure.name, None)
         limit = figure.limit.text if figure.limit else ""
-        rows.append([figure.name, number(figure.value), limit, figure.verdict(), number(other.value) if other else ""])
-    rows += [[figure.name, "", "", "", number(figure.value)] for figure in classic.values()]
+        rows.append([figure.name, number(figure.value), limit, figure.verdict(), *values_beside(figure.name)])
+    mine = {figure.name for figure in figures}
+    only_others = dict.fromkeys(name for found in others.values() for name in found if name not in mine)
+    rows += [[name, "", "", "", *values_beside(name)] for name in only_others]
     return rows
 
 
@@ -70,5 +84,5 @@ def as_columns(rows):
 
 def as_markdown(rows):
     lines = ["| " + " | ".join(row) + " |" for row in rows]
-    lines.insert(1, "|---|---:|---:|---|---:|")
+    lines.insert(1, "|---|---:|---:|---|" + "---:|" * (len(rows[0]) - 4))
     return "\n".join(lines)

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Runs a validation case, measures it, and compares the figures with their limits.
 
-The limits are for the default scheme; figures of the classic scheme only stand beside. Exit code 1: a limit is missed;
-2: wrong use, or a package is missing.
+The limits are for the default scheme, and for others that a case names in LIMITED; figures of further schemes only stand
+beside. Exit code 1: a limit is missed; 2: wrong use, or a package is missing.
 """
 import argparse
 import importlib.util
@@ -44,7 +44,12 @@ def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("case", choices=case_names())
     parser.add_argument("--size", choices=("small", "full"), default="small")
-    parser.add_argument("--scheme", choices=("default", "classic", "both"), default="both")
+    parser.add_argument(
+        "--scheme",
+        choices=("default", "high", "classic", "limited", "all"),
+        default="all",
+        help="limited: those that the case has limits for",
+    )
     program = os.environ.get("GREENWATER_PROGRAM", ROOT / "build/openmp/app/greenwater")
     parser.add_argument("--program", type=Path, default=program, metavar="PATH", help="default: %(default)s")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep the runs here, and read what is here already")
@@ -72,18 +77,33 @@ def measure(case, runs):
     return figures, notes
 
 
+def limited_schemes(case):
+    return getattr(case, "LIMITED", ("default",))
+
+
+def schemes_of(choice, case):
+    return {"all": ("default", "high", "classic"), "limited": limited_schemes(case)}.get(choice, (choice,))
+
+
 def report(options, case, runs, measured):
     """Prints the table, writes the page if asked for; whether all went well."""
     import figures
     import page
 
-    first = "default" if "default" in measured else "classic"
+    first = next(iter(measured))
     chosen = measured[first][0]
-    beside = measured["classic"][0] if len(measured) == 2 else []
+    beside = {scheme: found for scheme, (found, _) in measured.items() if scheme != first}
     notes = [note for _, found in measured.values() for note in found]
-    if len(measured) == 2 and not notes and hasattr(case, "compare"):
+    if "default" in measured and "classic" in measured and not notes and hasattr(case, "compare"):
         chosen += case.compare(runs["default"], runs["classic"])
-    if first == "classic":
+    limited = limited_schemes(case)
+    missed = {
+        scheme: [figure.name for figure in found if figure.misses()] for scheme, (found, _) in measured.items() if scheme in limited
+    }
+    for scheme, names in missed.items():
+        if scheme != first and names:
+            notes.append(f"Scheme {scheme} misses its limit: {'; '.join(names)}.")
+    if first not in limited:
         for figure in chosen:
             figure.limit = None
     rows = figures.table(chosen, beside)
@@ -95,7 +115,7 @@ def report(options, case, runs, measured):
         command = f"cases/validation/run.py {options.case} --size {options.size}"
         page.write_table(folder / "README.md", rows, page.origin(any_run.manifest(), command), notes)
         page.draw_picture(folder / "picture.png", case.draw, runs)
-    return not any(figure.misses() for figure in chosen) and not measured[first][1]
+    return not any(missed.values()) and not any(measured[scheme][1] for scheme in missed)
 
 
 def main():
@@ -107,7 +127,7 @@ def main():
     from runs import Runs
 
     case = load_case(options.case)
-    schemes = ("default", "classic") if options.scheme == "both" else (options.scheme,)
+    schemes = schemes_of(options.scheme, case)
     with tempfile.TemporaryDirectory(prefix="greenwater_") as scratch:
         base = (options.keep or Path(scratch)).resolve() / options.case / options.size
         program = options.program.resolve()

@@ -11,11 +11,15 @@ from pathlib import Path
 import h5py
 import numpy
 
-# What the classic scheme needs beside its name; its C = 1.05 is the program's own default.
-CLASSIC = {
-    "mps.scheme": "classic",
-    "effects.collision.distance": 0.85,
-    "effects.collision.restitution": 0.2,
+# What each scheme is to a case that is written for the default one. Classic's C = 1.05 is the program's own default.
+SCHEMES = {
+    "default": {},
+    "high": {"mps.scheme": "high"},
+    "classic": {
+        "mps.scheme": "classic",
+        "effects.collision.distance": 0.85,
+        "effects.collision.restitution": 0.2,
+    },
 }
 
 
@@ -76,7 +80,7 @@ class Runs:
     def _start(self, name, settings, file, options):
         folder = self.folder / name
         command = [str(self.program), "run", str(self.case / file), "--quiet", *options]
-        for key, value in {**settings, **(CLASSIC if self.scheme == "classic" else {})}.items():
+        for key, value in {**settings, **SCHEMES[self.scheme]}.items():
             command += ["--set", f"{key}={as_text(value)}"]
         stamp = self._stamp(command, file)
         if not is_finished(folder, stamp):
@@ -89,10 +93,17 @@ class Runs:
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         self.folder.mkdir(parents=True, exist_ok=True)
         ended = subprocess.run(command, env=quiet_openmp(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        say(f"{resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before:.1f} s of the processor")
+        seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        say(f"{seconds:.1f} s of the processor")
+        self.folder.joinpath(name + ".cost").write_text(f"{seconds:.3f}\n")
         if ended.returncode != 0:
             lines = ended.stdout.strip().splitlines()
             raise RunFailed(f"{name}: exit {ended.returncode}: " + (lines[0] if lines else "no word of it"))
+
+    def cost(self):
+        """Of all runs so far [s of the processor]."""
+        kept = [self.folder / f"{name}.cost" for name in self.done]
+        return sum(float(path.read_text()) for path in kept if path.exists())
 
     def _stamp(self, command, file):
         """What must be the same for a kept run to be read and not done again."""
