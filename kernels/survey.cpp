@@ -8,7 +8,7 @@ namespace {
 
 constexpr real poor = real(0.15), fair = real(0.35);  // of a stencil: 1 when round, 0 when particles are in a line
 constexpr real largest_error = real(0.1);             // of n / n^0 - 1 that the drift term answers to
-constexpr real largest_bend = real(0.05);             // of a volume in one step, by what is of second order in the step
+constexpr real largest_bend = real(0.01);             // of a volume in one step, by what is of second order in the step
 constexpr real crowd_margin = real(0.05);             // of 1 - n / n^0: who is crowded may lack that much less
 constexpr real thin = real(0.15);                     // more of n missing than under a flat surface: a tip or a sheet
 
