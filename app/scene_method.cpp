@@ -110,8 +110,7 @@ void read_default_scheme(Section& mps, int dimension, MpsCase& options) {
 
 void read_classic_scheme(Section& mps, int dimension, MpsCase& options) {
   constexpr double least_radius = 1.1;  // x spacing: neighbours at all
-  refuse_keys(mps, {"radius", "default"}, "default",
-              "classic has a radius for each of its sums: radius_density, ...");
+  refuse_keys(mps, {"radius", "default"}, "default", "classic has a radius for each of its sums: radius_density, ...");
   if (dimension == 3) set_radii(options, usual_radius_3d);
   options.kernel = mps.choice("kernel", {"koshizuka_shifted", "standard"}, options.kernel);
   options.kernel_shift = mps.number("kernel_shift", "-", positive, options.kernel_shift);
