@@ -20,12 +20,13 @@ real longest_way_in(const Fluid& fluid, const Before& before) {
   const auto x = Read<CoordField>(fluid.particles.position), x0 = Read<CoordField>(before.particles.position);
   const auto u = Read<VectorField>(fluid.particles.velocity);
   const auto neighbours = Read<IndexField>(fluid.rows.near.number);
+  const GridShape grid = fluid.grid.shape();
   const coord infinite = std::numeric_limits<coord>::infinity();
   coord most2 = 0;
   Kokkos::parallel_reduce(
       "greenwater::undo_longest_way", Range(0, fluid.particles.count),
       KOKKOS_LAMBDA(const int i, coord& most) {
-        const auto way = difference(load<Dim>(x, i), load<Dim>(x0, place(id(i))));
+        const auto way = way_between(grid, load<Dim>(x0, place(id(i))), load<Dim>(x, i));
         const auto ui = load<Dim>(u, i);
         const coord way2 = dot(way, way), counts = neighbours(i) > Dim ? way2 : 0;
         most =
@@ -54,7 +55,7 @@ int pairs_run_together_in(const Fluid& fluid, const Before& before, real distanc
           for (int l = 0; l < pack_lanes; ++l) {
             if (!(bits >> l & 1) || i + l >= count || lane(j, l) > i + l) continue;  // each pair once
             const auto from = load<Dim>(x0, place(id(i + l))), to = load<Dim>(x0, place(id(lane(j, l))));
-            const auto had = difference(to, from);
+            const auto had = way_between(near.grid, from, to);
             if (lane(r2, l) < dot(had, had) / 4) ++sum;
           }
         });

@@ -208,6 +208,19 @@ TEST_CASE("a channel without friction falls along itself", "[unit][periodic]") {
   }
 }
 
+TEST_CASE("to come in on the other side is no long way, and undoes no step", "[unit][periodic][undo]") {
+  Scene scene = scene_of_text(channel());
+  scene.fluid.velocity.text = {"3", "0", "0"};
+  FluidSimulation simulation(scene);
+  const auto start = places_of(simulation);
+  while (simulation.time() < 0.019) simulation.step();
+  for (const Notice& notice : simulation.facts().notices) CHECK(notice.kind != "undone");
+  double least = 1;
+  for (const Point& x : places_of(simulation)) least = std::min(least, x[0]);
+  CHECK(least == Approx(0.032).margin(1e-3));  // those that have come in at the left
+  CHECK(simulation.steps() == 19);
+}
+
 TEST_CASE("what a domain that repeats itself cannot have is told before any work", "[unit][periodic][case]") {
   const auto complaint = [](const std::string& text) {
     try {

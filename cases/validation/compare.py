@@ -42,7 +42,7 @@ def rows_of(name, case, runs, measured):
     costs = [runs[scheme].cost() for scheme in SCHEMES]
     failed = [any("Scheme" in note for note in measured[scheme][1]) for scheme in SCHEMES]
     base = costs[SCHEMES.index("default")]
-    cells = ["fails" if bad else f"{number(cost)} s ({cost / base:.2f})" for cost, bad in zip(costs, failed)]
+    cells = ["fails" if bad else f"{number(cost)} s ({cost / max(base, 1e-3):.2f})" for cost, bad in zip(costs, failed)]
     yield [f"**{name}: time of the processor**", "", *cells]
 
 

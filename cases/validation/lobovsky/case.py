@@ -13,11 +13,12 @@ MEAN = 0.02  # both curves are averaged over so much time [sqrt(H/g)]
 ARRIVED = 0.2  # the mean pressure [rho g H] that counts as arrival
 IMPULSE_TIME = 1.5  # the impulse is counted from arrival for so long [sqrt(H/g)]
 # Parts of the measured arrival, peak and impulse. At the small size's 10 mm the lowest sensor is below the first row of
-# particles and the jet up the wall is one of them thick: only arrivals are held to a limit, and the impulse at 30 mm.
+# particles and the jet up the wall is one of them thick: only arrivals are held to a limit, and the impulse at 30 mm. Not the
+# arrival at 80 mm: there it is 2.50 or 2.95, as the first splash happens to fly, and flips when a step is a fifth shorter.
 FULL = (0.03, 0.15, 0.10)
 LIMITS = {
     "full": {"3mm": FULL, "30mm": FULL, "80mm": FULL},
-    "small": {"3mm": (0.06, None, None), "30mm": (0.06, None, 0.2), "80mm": (0.06, None, None)},
+    "small": {"3mm": (0.06, None, None), "30mm": (0.06, None, 0.2), "80mm": (None, None, None)},
 }
 
 # t sqrt(g/H), p / (rho g H); read off the figures of Lobovsky et al., J. Fluids Struct. 48:407, 2014, H = 0.3 m.
