@@ -22,6 +22,8 @@ constexpr double bytes_per_neighbor = 4, bytes_per_weight = 4;
 constexpr double bytes_of_multigrid = 220, bytes_of_multigrid_third_axis = 130;
 // What a step that can be undone starts from: all fields once more, and where each particle is.
 constexpr double bytes_of_undo = 75, bytes_of_undo_third_axis = 24;
+// Fits of the scheme "high": coefficients, vectors of its solver, and another weight for each neighbour.
+constexpr double bytes_of_fits = 200, bytes_of_fits_third_axis = 170;
 constexpr double row_growth = 1.5;                           // rows grow ahead of need
 constexpr double frame_bytes_h5 = 33, frame_bytes_vtp = 49;  // per particle, float32
 constexpr double frame_bytes_third_axis = 8;                 // of position and velocity; VTP has three always
@@ -34,11 +36,14 @@ double memory_of(const Scene& scene, double particles) {
   const double radius = largest_radius(scene.mps);
   const double neighbors =
       scene.dimension == 2 ? std::numbers::pi * radius * radius : 4.0 / 3 * std::numbers::pi * radius * radius * radius;
-  const double entry = bytes_per_neighbor + (scene.mps.pressure.weights == "kept" ? bytes_per_weight : 0);
+  const bool high = scene.mps.scheme == "high";
+  const double weights = (scene.mps.pressure.weights == "kept" ? 1 : 0) + (high ? 1 : 0);
+  const double entry = bytes_per_neighbor + weights * bytes_per_weight;
   double fields = bytes_per_particle + (scene.dimension == 3 ? bytes_of_third_axis : 0);
   if (scene.mps.pressure.preconditioner == "multigrid")
     fields += bytes_of_multigrid + (scene.dimension == 3 ? bytes_of_multigrid_third_axis : 0);
   if (scene.mps.undo.halvings > 0) fields += bytes_of_undo + (scene.dimension == 3 ? bytes_of_undo_third_axis : 0);
+  if (high) fields += bytes_of_fits + (scene.dimension == 3 ? bytes_of_fits_third_axis : 0);
   return particles * (fields + row_growth * neighbors * entry);
 }
 

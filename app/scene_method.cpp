@@ -139,7 +139,10 @@ void read_mps(Section mps, Scene& scene) {
   options.cfl_warn = mps.number("cfl_warn", "-", positive, options.cfl_warn);
   const bool classic = options.scheme == "classic";
   (classic ? read_classic_scheme : read_default_scheme)(mps, scene.dimension, options);
-  read_pressure(mps.table("pressure"), classic, options.pressure);
+  Section pressure = mps.table("pressure");
+  read_pressure(pressure, classic, options.pressure);
+  require_at(pressure.place("weights"), options.scheme != "high" || options.pressure.weights == "kept",
+             "weights = \"recomputed\" are those of symmetric rows, which scheme = \"high\" has not; delete it");
 }
 
 void read_undo(Section section, Scene& scene) {

@@ -1,7 +1,8 @@
 #pragma once
 // Derivatives by least squares (LSMPS, Tamai and Koshizuka 2014): round each particle the quadratic polynomial that goes
-// through its own value and is nearest to those of its neighbours and images, weighted with phi = (1 - r / r_e)^q, q = 2 r_e / l0 or so: the nearer ones tell more of
-// curvature, whatever the radius. Exact for quadratic fields at any disorder, where sums with lattice constants are so on the lattice only. Every derivative is
+// through its own value and is nearest to those of its neighbours and images, weighted with phi = (1 - r / r_e)^q,
+// q = 2 r_e / l0 or so: the nearer ones tell more of curvature, whatever the radius. Exact for quadratic fields at any
+// disorder, where sums with lattice constants are so on the lattice only. Every derivative is
 //
 //   sum_j phi_ij (a . P(r_ij)) (f_j - f_i),   P = (x, y, x^2/2, y^2/2, x y), in 3-D (x, y, z, x^2/2, y^2/2, z^2/2, x y, ...)
 //

@@ -3,10 +3,12 @@
 #include <cmath>
 
 #include "app/scheme.hpp"
+#include "core/check.hpp"
 #include "kernels/acceleration.hpp"
 #include "kernels/biconjugate_gradient.hpp"
 #include "kernels/effects/effect.hpp"
 #include "kernels/reaction.hpp"
+#include "tests/case_text.hpp"
 #include "tests/still_water.hpp"
 
 using namespace greenwater;
@@ -201,6 +203,25 @@ TEST_CASE("biconjugate gradients solve rows that are not symmetric", "[unit][hig
   }
 }
 
+TEST_CASE("the default scheme makes no fits, and knows no edge where space does not repeat itself", "[unit][high]") {
+  Effects none;
+  for (const bool fits : {false, true}) {
+    Fluid fluid = tank(2, 3.1, 0);
+    DefaultOptions options;
+    options.reference_speed = 1;
+    options.fits = fits;
+    const auto scheme = make_default(options);
+    Ears ears;
+    scheme->step(fluid, none, dt);
+    CHECK(ears.launched("greenwater::survey"));
+    CHECK(fluid.fits.empty() == !fits);
+    for (const char* of_fits : {"fit", "bicg", "weigh_rows"}) CHECK(ears.launched(of_fits) == fits);
+    CHECK(ears.allocated("fit") == fits);
+    CHECK(ears.allocated("bicg") == fits);
+    CHECK_FALSE(ears.launched("wrap_positions"));
+  }
+}
+
 TEST_CASE("a shear wave decays as nu k^2 says, to the fourth order of the spacing with fits",
           "[unit][high][viscosity]") {
   const double k = 2 * M_PI / 2, nu = 1e-3;
@@ -223,4 +244,18 @@ TEST_CASE("a shear wave decays as nu k^2 says, to the fourth order of the spacin
   }
   CHECK(error[false] < 0.04);
   CHECK(error[true] < 0.15 * error[false]);
+}
+
+TEST_CASE("the scheme high reads the default scheme's table, and refuses weights that are not kept",
+          "[unit][high][case]") {
+  const auto text = [](const std::string& more) {
+    return "format = 1\n[case]\nname = \"h\"\n[time]\nend = 1\n"
+           "[[fluid]]\nregion = { type = \"box\", min = [0, 0], max = [1, 1] }\n"
+           "[mps]\nscheme = \"high\"\nspacing = 0.1\ntime_step = 1e-3\n" +
+           more;
+  };
+  CHECK(scene_of_text(text("")).mps.parts.smoothing == 0.1);
+  CHECK(scene_of_text(text("[mps.default]\nsmoothing = 0.2\n")).mps.parts.smoothing == 0.2);
+  CHECK_THROWS_WITH(scene_of_text(text("[mps.pressure]\nweights = \"recomputed\"\n")),
+                    Catch::Contains("case.toml:12:11") && Catch::Contains("delete it"));
 }

@@ -123,7 +123,7 @@ def measure_heights(size, run, spacing):
             frame = min(run.frames(), key=lambda f: abs(f.time - time))
             limited = gauge == RESERVOIR
             name = f"{gauge}: height at {time} s [m]" + ("" if limited else f", measured {reference}")
-            yield Figure(name, height(frame, x, spacing), near(reference, RESERVOIR_OFF[runs.size]) if limited else None)
+            yield Figure(name, height(frame, x, spacing), near(reference, RESERVOIR_OFF[size]) if limited else None)
 
 
 def draw(figure, runs):
