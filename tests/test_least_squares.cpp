@@ -257,5 +257,5 @@ TEST_CASE("the scheme high reads the default scheme's table, and refuses weights
   CHECK(scene_of_text(text("")).mps.parts.smoothing == 0.1);
   CHECK(scene_of_text(text("[mps.default]\nsmoothing = 0.2\n")).mps.parts.smoothing == 0.2);
   CHECK_THROWS_WITH(scene_of_text(text("[mps.pressure]\nweights = \"recomputed\"\n")),
-                    Catch::Contains("case.toml:12:11") && Catch::Contains("delete it"));
+                    Catch::Contains("case.toml:13:11") && Catch::Contains("delete it"));
 }
