@@ -3,6 +3,7 @@ import math
 
 import numpy
 
+from curves import averaged, impact
 from figures import Figure, near
 
 TITLE = "pressure of a dam break on the far wall"
@@ -36,20 +37,13 @@ MEASURED = {
 TIME = numpy.arange(0, 4.9, 0.001)
 
 
-def averaged(time, pressure):
-    """Sampled evenly, and the centred mean over MEAN."""
-    samples = round(MEAN / (TIME[1] - TIME[0]))
-    even = numpy.interp(TIME, time, pressure)
-    return numpy.convolve(even, numpy.ones(samples) / samples, mode="same")
-
-
 def measured(sensor):
-    return averaged(*zip(*MEASURED[sensor]))
+    return averaged(*zip(*MEASURED[sensor]), TIME, MEAN)
 
 
 def computed(runs, spacing, sensor):
     time, pressure = run_of(runs, spacing).probe(sensor)
-    return averaged(time / UNIT_TIME, pressure / (RHO * G * H))
+    return averaged(time / UNIT_TIME, pressure / (RHO * G * H), TIME, MEAN)
 
 
 def run_of(runs, spacing):
@@ -61,11 +55,7 @@ def run_of(runs, spacing):
 
 def facts(curve):
     """Arrival, peak, impulse; nan where the curve never arrives."""
-    if curve.max() < ARRIVED:
-        return math.nan, math.nan, math.nan
-    arrival = TIME[numpy.argmax(curve >= ARRIVED)]
-    counted = (TIME >= arrival) & (TIME <= arrival + IMPULSE_TIME)
-    return arrival, curve[counted].max(), curve[counted].sum() * (TIME[1] - TIME[0])
+    return impact(TIME, curve, ARRIVED, IMPULSE_TIME)
 
 
 def measure(runs):

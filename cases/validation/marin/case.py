@@ -3,6 +3,7 @@ import math
 
 import numpy
 
+from curves import averaged, impact
 from figures import Figure, below, near
 
 TITLE = "a dam break onto a box"
@@ -45,14 +46,12 @@ HEIGHTS = {
 TIME = numpy.arange(0, 2.0, 0.0005)
 
 
-def averaged(time, pressure):
-    """Sampled evenly, and the centred mean over MEAN."""
-    samples = round(MEAN / (TIME[1] - TIME[0]))
-    return numpy.convolve(numpy.interp(TIME, time, pressure), numpy.ones(samples) / samples, mode="same")
+def smooth(time, pressure):
+    return averaged(time, pressure, TIME, MEAN)
 
 
 def measured(sensor):
-    return averaged(*zip(*MEASURED[sensor]))
+    return smooth(*zip(*MEASURED[sensor]))
 
 
 def name_of(spacing):
@@ -68,11 +67,8 @@ def run_of(runs, spacing):
 
 def facts(curve):
     """Arrival [s], peak and impulse [rho g H and s]; nan where the curve never arrives."""
-    if curve.max() < ARRIVED:
-        return math.nan, math.nan, math.nan
-    arrival = TIME[numpy.argmax(curve >= ARRIVED)]
-    counted = (TIME >= arrival) & (TIME <= arrival + IMPULSE_TIME)
-    return arrival, curve[counted].max() / HEAD, curve[counted].sum() * (TIME[1] - TIME[0]) / HEAD
+    arrival, peak, impulse = impact(TIME, curve, ARRIVED, IMPULSE_TIME)
+    return arrival, peak / HEAD, impulse / HEAD
 
 
 def height(frame, x, spacing):
@@ -108,7 +104,7 @@ def measure_at(runs, spacing):
 
 def measure_pressure(size, run):
     for sensor in MEASURED:
-        values, references = facts(averaged(*run.probe(sensor))), facts(measured(sensor))
+        values, references = facts(smooth(*run.probe(sensor))), facts(measured(sensor))
         names = ("arrival [s]", "peak / rho g H", "impulse / rho g H [s]")
         for name, value, reference, part in zip(names, values, references, (ARRIVAL[size], None, IMPULSE[size])):
             limit = near(reference, part) if part else None
@@ -131,7 +127,7 @@ def draw(figure, runs):
         for scheme, colour in (("classic", "tab:orange"), ("default", "tab:blue")):
             run = runs[scheme].done.get(name_of(SIZES[runs[scheme].size][-1])) if scheme in runs else None
             if run:
-                curve = averaged(*run.probe(sensor))
+                curve = smooth(*run.probe(sensor))
                 axes.plot(TIME, curve / HEAD, color=colour, lw=0.8, label=scheme)
         axes.plot(TIME, measured(sensor) / HEAD, "k-", lw=0.8, label="Kleefsman et al. 2005")
         axes.set(title=sensor, xlabel="t [s]", xlim=(0.3, 2), ylim=(-0.2, 2.8))

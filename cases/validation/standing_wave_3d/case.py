@@ -3,6 +3,7 @@ import math
 
 import numpy
 
+from curves import crests, zero_crossings
 from figures import Figure, below, near
 
 TITLE = "a standing wave in 3-D"
@@ -36,20 +37,6 @@ def first_mode(runs):
     shapes = [numpy.cos(KX * frame.x[:, 0]) * numpy.cos(KY * frame.x[:, 1]) for frame in frames]
     mode = [shape.sum() * spacing**3 / (LENGTH * WIDTH / 4) for shape in shapes]
     return numpy.array([frame.time for frame in frames]), numpy.array(mode) / AMPLITUDE
-
-
-def zero_crossings(time, mode):
-    """In straight lines between the samples."""
-    i = numpy.flatnonzero(mode[:-1] * mode[1:] < 0)
-    return time[i] - mode[i] * (time[i + 1] - time[i]) / (mode[i + 1] - mode[i])
-
-
-def crests(time, mode):
-    """Times and heights of crests and troughs, by parabolas through three samples."""
-    size = numpy.abs(mode)
-    i = numpy.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:]) & (size[1:-1] > 0.2)) + 1
-    slope, bend = (size[i + 1] - size[i - 1]) / 2, size[i + 1] - 2 * size[i] + size[i - 1]
-    return time[i] - slope / bend * (time[1] - time[0]), size[i] - slope**2 / (2 * bend)
 
 
 def measure(runs):

@@ -1,8 +1,7 @@
 """A dam break onto a square column: the net force along the tank, and the speed of the water before the column."""
-import math
-
 import numpy
 
+from curves import averaged, impact
 from figures import Figure, below, near
 
 TITLE = "a dam break onto a square column"
@@ -31,12 +30,6 @@ SPEED = ((0.1, 1.71), (0.2, 1.51), (0.3, 1.37), (0.4, 1.22), (0.5, 1.03))
 TIME = numpy.arange(0, 1.4, 0.001)
 
 
-def averaged(time, force):
-    """Sampled evenly, and the centred mean over MEAN."""
-    samples = round(MEAN / (TIME[1] - TIME[0]))
-    return numpy.convolve(numpy.interp(TIME, time, force), numpy.ones(samples) / samples, mode="same")
-
-
 def run_of(runs):
     spacing = SIZES[runs.size]
     given = {"mps.spacing": spacing, "mps.time_step": 0.1 * spacing, "time.end": END[runs.size]}
@@ -45,13 +38,13 @@ def run_of(runs):
     return runs.run("column", given)
 
 
+def smooth(time, force):
+    return averaged(time, force, TIME, MEAN)
+
+
 def facts(curve):
     """Arrival [s], peak [N], impulse [N s]; nan where the curve never arrives."""
-    if curve.max() < ARRIVED:
-        return math.nan, math.nan, math.nan
-    arrival = TIME[numpy.argmax(curve >= ARRIVED)]
-    counted = (TIME >= arrival) & (TIME <= arrival + IMPULSE_TIME)
-    return arrival, curve[counted].max(), curve[counted].sum() * (TIME[1] - TIME[0])
+    return impact(TIME, curve, ARRIVED, IMPULSE_TIME)
 
 
 def speeds(run, spacing):
@@ -71,13 +64,13 @@ def in_the_column(frame):
 
 def measure(runs):
     run = run_of(runs)
-    computed, measured = facts(averaged(*run.probe("force"))), facts(averaged(*zip(*FORCE)))
+    computed, measured = facts(smooth(*run.probe("force"))), facts(smooth(*zip(*FORCE)))
     names = ("arrival [s]", "peak [N]", "impulse [N s]")
     for name, value, reference, part in zip(names, computed, measured, (None, None, IMPULSE[runs.size])):
         limit = near(reference, part) if part else None
         yield Figure(f"force: {name}" + ("" if part else f", measured {reference:.3g}"), value, limit)
     if runs.scheme == "default":
-        reaction = facts(averaged(*run.probe("reaction")))
+        reaction = facts(smooth(*run.probe("reaction")))
         yield Figure("impulse of the reaction / that of the fitted pressure", reaction[2] / computed[2], near(1, 0.05))
     time, speed = speeds(run, SIZES[runs.size])
     for after, reference in SPEED:
@@ -93,9 +86,9 @@ def draw(figure, runs):
     for scheme, colour in (("classic", "tab:orange"), ("default", "tab:blue")):
         run = runs[scheme].done.get("column") if scheme in runs else None
         if run:
-            left.plot(TIME, averaged(*run.probe("force")), color=colour, lw=0.8, label=scheme)
+            left.plot(TIME, smooth(*run.probe("force")), color=colour, lw=0.8, label=scheme)
             right.plot(*speeds(run, SIZES[runs[scheme].size]), color=colour, lw=0.8, label=scheme)
-    left.plot(TIME, averaged(*zip(*FORCE)), "k-", lw=0.8, label="Yeh and Petroff")
+    left.plot(TIME, smooth(*zip(*FORCE)), "k-", lw=0.8, label="Yeh and Petroff")
     right.plot(*zip(*SPEED), "ko", mfc="none", label="Yeh and Petroff")
     left.set(xlabel="t [s]", ylabel="force on the column [N]", xlim=(0.2, 1.4), ylim=(-20, 50))
     right.set(xlabel="time after the water has come [s]", ylabel="speed before the column [m/s]", xlim=(0, 0.7))
