@@ -5,10 +5,11 @@
 
 #include "app/fill.hpp"
 #include "app/formula.hpp"
+#include "app/random.hpp"
+#include "app/rim.hpp"
 #include "app/scene_shape.hpp"
 #include "core/check.hpp"
 #include "kernels/density.hpp"
-#include "kernels/packing.hpp"
 #include "kernels/speed.hpp"
 
 namespace greenwater {
@@ -48,14 +49,31 @@ Kernel build_kernel(const Scene& scene, double radius) {
   return kernel;
 }
 
-// The lattice does not fit to slanting walls: particles move until they fill the room evenly. Their numbers and
-// velocities are by place, so both are given anew.
-void spread_under_lid(const Scene& scene, const WallFaces& walls, Fluid& fluid) {
-  constexpr int sweeps = 100;
-  make_mirror_walls(fluid.walls, with_lid(scene, walls), fluid.grid.shape(), fluid.spacing);
-  spread_evenly(fluid, sweeps);
+// As a lattice is shaken; nobody goes through a wall or the rim.
+void shake(const Scene& scene, Fluid& fluid) {
+  const double most = scene.fluid.jitter * scene.mps.spacing;
+  if (most == 0) return;
+  const VectorField way = fluid.particles.velocity;
+  const auto id = Kokkos::create_mirror_view_and_copy(Kokkos::HostSpace(), fluid.particles.id);
+  const auto ways = Kokkos::create_mirror(way);
+  for (int i = 0; i < fluid.particles.count; ++i)
+    for (int d = 0; d < scene.dimension; ++d)
+      ways(i, d) = static_cast<real>(most * random_of(3 * static_cast<std::uint64_t>(id(i)) + d));
+  Kokkos::deep_copy(way, ways);
+  go_in_sight(fluid, way);
+}
+
+// No lattice fits: particles move until they fill the room evenly. Velocities are by place, so they are given anew.
+Packing relax(const Scene& scene, const WallFaces& walls, Fluid& fluid) {
+  PackingOptions options;
+  for (int d = 0; d < scene.dimension; ++d)
+    options.longest = std::max(options.longest, (scene.fluid.max[d] - scene.fluid.min[d]) / scene.mps.spacing);
+  make_mirror_walls(fluid.walls, with_rim(scene, walls), fluid.grid.shape(), fluid.spacing);
+  const Packing done = spread_evenly(fluid, options);
+  shake(scene, fluid);
   fluid.walls = {};
   set_velocity(scene, fluid.particles);
+  return done;
 }
 
 // Where a wall closes the scene nothing is to be seen beyond it; elsewhere water may fly as far as the scene is long.
@@ -67,7 +85,7 @@ GridShape build_grid(const Scene& scene, const WallFaces& walls) {
   double flight = 0;
   for (int d = 0; d < scene.dimension; ++d) flight = std::max(flight, high[d] - low[d]);
   const double brim = 2 * radius;
-  const bool sealed = needs_spreading(scene);  // water inside a closed shape
+  const bool sealed = fills_closed_shape(scene);  // water inside a closed shape
   Point from{}, to{};
   for (int d = 0; d < scene.dimension; ++d) {
     from[d] = low[d] - (sealed || closed_at(scene, d, 0, low[d]) ? brim : flight);
@@ -122,7 +140,7 @@ std::unique_ptr<Motion> motion_of(const Scene& scene, const WallFaces& walls, co
   return nullptr;
 }
 
-Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
+Fluid build_fluid(const Scene& scene, const WallFaces& walls, Packing* packing) {
   Fluid fluid;
   fluid.spacing = scene.mps.spacing;
   fluid.rho = static_cast<real>(scene.fluid.density);
@@ -133,7 +151,10 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls) {
   fluid.laplacian = build_kernel(scene, scene.mps.radius_laplacian);
   fluid.grid = CellGrid(build_grid(scene, walls));
   fluid.particles = build_particles(scene);
-  if (needs_spreading(scene)) spread_under_lid(scene, walls, fluid);
+  if (scene.fluid.packing == "relaxed") {
+    const Packing done = relax(scene, walls, fluid);
+    if (packing) *packing = done;
+  }
   fluid.faces = walls;
   make_mirror_walls(fluid.walls, walls, fluid.grid.shape(), fluid.spacing);
   settle_rows(fluid);

@@ -4,12 +4,14 @@
 #include "app/build_walls.hpp"
 #include "app/motion.hpp"
 #include "app/scheme.hpp"
+#include "kernels/packing.hpp"
 
 namespace greenwater {
 
-/// Particles on the lattice inside the fluid's region (not inside plates), walls, grid, weights; rows built.
-/// Throws CaseError when there is no particle or not the expected number of them.
-Fluid build_fluid(const Scene& scene, const WallFaces& walls);
+/// Particles on the lattice inside the fluid's region (not inside solids), or spread evenly in it, walls, grid, weights;
+/// rows built. What spreading has done goes to `packing`. Throws CaseError when there is no particle or not the expected
+/// number of them.
+Fluid build_fluid(const Scene& scene, const WallFaces& walls, Packing* packing = nullptr);
 
 /// Just the effects that the scene names.
 Effects build_effects(const Scene& scene);

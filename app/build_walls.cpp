@@ -103,42 +103,17 @@ void add_mesh(WallFaces& walls, const Scene& scene, const MeshCase& mesh) {
   for (const auto& [a, b, c] : mesh.mesh.triangles) add_face(walls, body, at[a], at[b], at[c]);
 }
 
-// How far a geometry goes along an axis during the run, to either side.
+// How far a body goes along an axis during the run, to either side.
 double travel_of(const Scene& scene, const std::string& name, int axis) {
   constexpr int looks = 200;
+  const auto names = wall_names(scene);
+  if (std::find(names.begin(), names.end(), name) == names.end()) return 0;  // the rim
   const GeometryCase& geometry = geometry_named(scene, name);
   if (!geometry.motion) return 0;
   const Motion motion(*geometry.motion);
   double most = 0;
   for (int k = 1; k <= looks; ++k) most = std::max(most, std::fabs(motion.displacement(scene.end * k / looks)[axis]));
   return most;
-}
-
-// Beyond the edges of a domain that repeats itself walls go on: copies of all that comes within a radius of the domain.
-void repeat_walls(WallFaces& walls, const Scene& scene, int axis) {
-  const MpsCase& mps = scene.mps;
-  const double low = scene.domain_min[axis], high = scene.domain_max[axis], period = high - low;
-  const double reach = 2 * mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
-  std::vector<double> beyond;  // of each body: what must be covered on either side of the domain
-  for (const WallBody& body : walls.bodies) beyond.push_back(reach + travel_of(scene, body.name, axis));
-  const std::vector<WallFace> once = walls.faces;
-  for (const WallFace& face : once) {
-    double from = face.corner[0].position[axis], to = from;
-    for (int e = 1; e < walls.dim; ++e) {
-      from = std::min(from, face.corner[e].position[axis]);
-      to = std::max(to, face.corner[e].position[axis]);
-    }
-    const double more = beyond[face.body];
-    const int first = static_cast<int>(std::ceil((low - more - to) / period));
-    const int last = static_cast<int>(std::floor((high + more - from) / period));
-    for (int k = first; k <= last; ++k) {
-      if (k == 0) continue;
-      WallFace copy = face;
-      copy.repeated = true;
-      for (int e = 0; e < walls.dim; ++e) copy.corner[e].position[axis] += k * period;
-      walls.faces.push_back(copy);
-    }
-  }
 }
 
 void widen(Extent& extent, const WallFaces& walls) {
@@ -160,21 +135,34 @@ WallFaces build_walls(const Scene& scene) {
   for (const PlateCase& plate : scene.plates) add_plate(walls, scene, plate);
   for (const MeshCase& mesh : scene.meshes) add_mesh(walls, scene, mesh);
   for (int axis = 0; axis < scene.dimension; ++axis)
-    if (scene.repeats[axis]) repeat_walls(walls, scene, axis);
+    if (scene.repeats[axis]) repeat_walls(walls, scene, axis, 0);
   return walls;
 }
 
-WallFaces with_lid(const Scene& scene, const WallFaces& walls) {
-  WallFaces closed = walls;
-  const int body = add_body(closed, scene, "lid");
-  const double beyond = 5 * scene.mps.spacing, level = scene.fluid.level;
-  const double x0 = scene.fluid.min[0] - beyond, x1 = scene.fluid.max[0] + beyond;
-  const double y0 = scene.fluid.min[1] - beyond, y1 = scene.fluid.max[1] + beyond;
-  if (scene.dimension == 2)
-    add_face(closed, body, {x0, level, 0}, {x1, level, 0});
-  else
-    add_rectangle(closed, body, {x0, y0, level}, {x1, y0, level}, {x1, y1, level}, {x0, y1, level});
-  return closed;
+void repeat_walls(WallFaces& walls, const Scene& scene, int axis, std::size_t first_face) {
+  const MpsCase& mps = scene.mps;
+  const double low = scene.domain_min[axis], high = scene.domain_max[axis], period = high - low;
+  const double reach = 2 * mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
+  std::vector<double> beyond;  // of each body: what must be covered on either side of the domain
+  for (const WallBody& body : walls.bodies) beyond.push_back(reach + travel_of(scene, body.name, axis));
+  const std::vector<WallFace> once(walls.faces.begin() + static_cast<std::ptrdiff_t>(first_face), walls.faces.end());
+  for (const WallFace& face : once) {
+    double from = face.corner[0].position[axis], to = from;
+    for (int e = 1; e < walls.dim; ++e) {
+      from = std::min(from, face.corner[e].position[axis]);
+      to = std::max(to, face.corner[e].position[axis]);
+    }
+    const double more = beyond[face.body];
+    const int first = static_cast<int>(std::ceil((low - more - to) / period));
+    const int last = static_cast<int>(std::floor((high + more - from) / period));
+    for (int k = first; k <= last; ++k) {
+      if (k == 0) continue;
+      WallFace copy = face;
+      copy.repeated = true;
+      for (int e = 0; e < walls.dim; ++e) copy.corner[e].position[axis] += k * period;
+      walls.faces.push_back(copy);
+    }
+  }
 }
 
 WallMotion build_motion(const Scene& scene) {

@@ -10,8 +10,9 @@ namespace greenwater {
 /// All faces of the scene's geometries, with their names.
 WallFaces build_walls(const Scene& scene);
 
-/// The walls with a lid on the fluid, under which particles can be spread.
-WallFaces with_lid(const Scene& scene, const WallFaces& walls);
+/// Beyond the edges of a domain that repeats itself along this axis walls go on: adds copies of the faces from
+/// `first_face` on that come within reach of it.
+void repeat_walls(WallFaces& walls, const Scene& scene, int axis, std::size_t first_face);
 
 /// How the scene's walls move; empty when they all stand.
 WallMotion build_motion(const Scene& scene);

@@ -7,13 +7,9 @@
 
 namespace greenwater {
 
-/// Cell centres of the lattice in the fluid's box or ball, or in the inside of a geometry below the level; not in plates. In an
-/// inside that the lattice does not fit to there are as many as have room by volume, and they still have to be spread:
-/// see needs_spreading(). With the fluid's jitter, where it has one: the same at every call and on every machine. Throws
-/// CaseError when there is none.
+/// Cell centres of the lattice in the fluid's box or ball, not in solids (see Room), with the fluid's jitter, where it has
+/// one: the same at every call and on every machine. With packing "relaxed" as many places as have room by volume; they
+/// still have to be spread, and to be shaken after that. Throws CaseError when there is none.
 std::vector<Point> fill(const Scene& scene);
-
-/// Whether the fluid fills the inside of something other than a box.
-bool needs_spreading(const Scene& scene);
 
 }  // namespace greenwater

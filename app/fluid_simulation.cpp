@@ -1,5 +1,7 @@
 #include "app/fluid_simulation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -43,6 +45,13 @@ Column vector_column(const std::string& name, const std::string& unit, const Fie
   return {name, unit, dim, std::move(values)};
 }
 
+std::string packing_line(const Packing& packing) {
+  return fmt::format(
+      "packing   {} sweeps; n is off by {:.2f} % rms and {:.2f} % at most, before by {:.3g} % and {:.3g} %",
+      packing.sweeps, 100 * packing.after.rms, 100 * packing.after.most, 100 * packing.before.rms,
+      100 * packing.before.most);
+}
+
 std::string effects_text(const Effects& effects) {
   std::string text;
   for (const Stage stage : {Stage::force, Stage::walls, Stage::after_move}) {
@@ -59,7 +68,7 @@ FluidSimulation::FluidSimulation(const Scene& scene)
       walls_at_start_(build_walls(scene)),
       coupler_(
           build_coupler(scene, structures_, add_wet_surfaces(scene, structures_, walls_at_start_), walls_at_start_)),
-      fluid_(build_fluid(scene, walls_at_start_)),
+      fluid_(build_fluid(scene, walls_at_start_, &packing_)),
       effects_(build_effects(scene)),
       scheme_(build_scheme(scene, fluid_)),
       step_length_(scene, structures_.empty() ? 0 : structures_.front().march_options().step),
@@ -268,6 +277,7 @@ std::vector<std::string> FluidSimulation::plan() const {
   plan.particles = fluid_.particles.count;  // the arithmetic of the plan knows no plates and no slanting walls
   plan.at_most = false;
   std::vector<std::string> lines = plan_lines(plan, scene_);
+  if (scene_.fluid.packing == "relaxed") lines.push_back(packing_line(packing_));
   lines.push_back(text_of("walls     ", fluid_.walls.panels, fluid_.faces.dim == 2 ? " straight" : " plane",
                           " panels, ", fluid_.walls.count - fluid_.walls.panels, " reflections in corners"));
   lines.push_back("effects   " + effects_text(effects_));

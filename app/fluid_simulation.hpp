@@ -74,6 +74,7 @@ class FluidSimulation : public Simulation {
   std::vector<Structure> structures_;
   WallFaces walls_at_start_;
   Coupler coupler_;
+  Packing packing_;  // of the start, where particles were spread
   Fluid fluid_;
   Effects effects_;
   std::unique_ptr<Scheme> scheme_;

@@ -54,11 +54,17 @@ double disk_of(const Scene& scene, double particles, double frames) {
   return frames * particles * (h5 * real_scale + vtp);
 }
 
-/// By the lattice, in a ball by its volume.
+/// By the lattice; in a ball, and of particles that are spread, by volume.
 double particles_of(const Scene& scene) {
   if (scene.fluid.ball) {
     const double r = scene.fluid.ball->radius / scene.mps.spacing;
     return std::round(std::numbers::pi * (scene.dimension == 2 ? r * r : 4.0 / 3 * r * r * r));
+  }
+  if (scene.fluid.packing == "relaxed") {
+    double cells = 1;
+    for (std::size_t d = 0; d < static_cast<std::size_t>(scene.dimension); ++d)
+      cells *= (scene.fluid.max[d] - scene.fluid.min[d]) / scene.mps.spacing;
+    return std::round(cells);
   }
   const auto cells = lattice_cells(scene.fluid, scene.mps.spacing, scene.dimension);
   return cells[0] * cells[1] * cells[2];
@@ -186,9 +192,7 @@ Plan plan_of(const Scene& scene) {
   if (!scene.has_fluid) return plan_of_structures(scene);
   Plan plan;
   plan.particles = particles_of(scene);
-  plan.at_most =
-      !scene.fluid.inside.empty() &&
-      std::none_of(scene.boxes.begin(), scene.boxes.end(), [&](const auto& b) { return b.name == scene.fluid.inside; });
+  plan.at_most = scene.fluid.packing == "relaxed";
   plan.steps = std::ceil(scene.end / step_at_rest(scene) * (1 - 1e-12));
   plan.at_least = scene.mps.adaptive;
   if (scene.output.every_time > 0) {

@@ -88,14 +88,16 @@ struct BallCase {  // in 2-D a disc
 
 struct FluidCase {
   std::string name;
-  Place place;                   // of its region
-  double density = 1000;         // rho [kg/m^3]
-  Point min, max;                // [m] box filled with particles at the cell centres of a lattice of the spacing
-  std::optional<BallCase> ball;  // or: what is closer to a centre than a radius; min, max are then its bounds
-  std::string inside;            // or: the inside of this geometry (box, closed polyline, closed mesh) ...
-  double level = 0;              // ... up to this height [m] along the last axis; min, max are then its bounds
-  double jitter = 0;             // x spacing: how far a particle starts from its lattice point along an axis, at most
-  VectorFormula velocity;        // [m/s] initial, in x, y, z
+  Place place;                       // of its region
+  double density = 1000;             // rho [kg/m^3]
+  Point min, max;                    // [m] box filled with particles at the cell centres of a lattice of the spacing
+  std::optional<BallCase> ball;      // or: what is closer to a centre than a radius; min, max are then its bounds
+  std::string inside;                // or: the inside of this geometry (box, closed polyline, closed mesh) ...
+  double level = 0;                  // ... up to this height [m] along the last axis; min, max are then its bounds
+  std::vector<std::string> without;  // closed polylines and meshes that are solid
+  std::string packing = "lattice";   // lattice | relaxed: as many as have room by volume, spread evenly
+  double jitter = 0;                 // x spacing: how far a particle starts from its place along an axis, at most
+  VectorFormula velocity;            // [m/s] initial, in x, y, z
 };
 
 struct ViscosityCase {

@@ -131,7 +131,7 @@ std::vector<Point> rim_points(const Check& check) {
 void check_fluid_in_only_wall(const Check& check) {
   const Scene& scene = check.scene;
   const auto shapes = shapes_of(scene);
-  if (shapes.size() != 1 || !scene.boxes.empty() || !scene.plates.empty()) return;
+  if (!scene.fluid.without.empty() || shapes.size() != 1 || !scene.boxes.empty() || !scene.plates.empty()) return;
   const Point &a = scene.fluid.min, &b = scene.fluid.max;
   const Point centre{(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
   const Corners& bounds = shapes.front().bounds;
@@ -262,7 +262,8 @@ void check_period(const Check& check, std::size_t d) {
   require_at(place, scene.structures.empty(),
              "structures in a domain that repeats itself are not built; delete periodic");
   const double wide = scene.fluid.max[d] - scene.fluid.min[d], cells = std::round(period / mps.spacing);
-  if (scene.fluid.inside.empty() && !scene.fluid.ball && wide > period - mps.spacing)
+  if (scene.fluid.packing == "lattice" && scene.fluid.inside.empty() && !scene.fluid.ball &&
+      wide > period - mps.spacing)
     require_at(mps.spacing_place, std::fabs(cells * mps.spacing - period) < 1e-6 * mps.spacing,
                "particles do not fit into the period of ", period, " m along ", axis_name[d],
                ": there would be a gap or a crowd at its edge; take spacing = ", period / cells);

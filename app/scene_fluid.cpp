@@ -1,6 +1,7 @@
 // [[fluid]]: what is filled with water.
 
-#include "app/fill.hpp"
+#include <algorithm>
+
 #include "app/scene_parts.hpp"
 #include "app/scene_shape.hpp"
 #include "core/interior.hpp"
@@ -16,8 +17,8 @@ void require_simple(const PolylineCase& line, const Place& place) {
     const Point &from = line.points[edge], &to = line.points[(edge + 1) % line.points.size()];
     return shown_point(from, 2) + " - " + shown_point(to, 2);
   };
-  refuse(place, "the polyline \"", line.name, "\" cannot be filled: its sides ", shown((*edges)[0]), " m and ",
-         shown((*edges)[1]), " m meet; draw it round once, without crossing or touching itself");
+  refuse(place, "the polyline \"", line.name, "\" cannot be filled, nor left out: its sides ", shown((*edges)[0]),
+         " m and ", shown((*edges)[1]), " m meet; draw it round once, without crossing or touching itself");
 }
 
 /// The bounds of a geometry that has an inside.
@@ -85,8 +86,27 @@ void read_jitter(Section& section, Scene& scene) {
   fluid.jitter = section.number("jitter", "x spacing", at_least(0), fluid.jitter);
   require_at(section.place("jitter"), fluid.jitter < half, "jitter = ", fluid.jitter,
              " x spacing must be below 0.5, or particles leave their region");
-  require_at(section.place("jitter"), fluid.jitter == 0 || !needs_spreading(scene), "jitter = ", fluid.jitter,
-             " is lost in \"", fluid.inside, "\": particles are spread evenly there; delete it, or fill a box");
+}
+
+/// Closed geometries that the fluid flows round; the one that it fills is none.
+void read_without(Section& region, const Scene& scene, FluidCase& fluid) {
+  Words closed;
+  for (const PolylineCase& line : scene.polylines)
+    if (line.closed && line.name != fluid.inside) closed.push_back(line.name);
+  for (const MeshCase& mesh : scene.meshes)
+    if (mesh.closed && mesh.name != fluid.inside) closed.push_back(mesh.name);
+  if (closed.empty()) return;
+  fluid.without = region.choices("without", closed, Words{});
+  for (const PolylineCase& line : scene.polylines)
+    if (std::find(fluid.without.begin(), fluid.without.end(), line.name) != fluid.without.end())
+      require_simple(line, region.place("without"));
+}
+
+void read_packing(Section& section, Scene& scene) {
+  const bool is_fit = !fills_closed_shape(scene);
+  scene.fluid.packing = section.choice("packing", {"lattice", "relaxed"}, std::string(is_fit ? "lattice" : "relaxed"));
+  require_at(section.place("packing"), is_fit || scene.fluid.packing == "relaxed", "no lattice fits into \"",
+             scene.fluid.inside, "\": take packing = \"relaxed\", or fill a box");
 }
 
 }  // namespace
@@ -112,6 +132,8 @@ void read_fluid(Section root, Scene& scene) {
   if (type == "box") read_box_region(region, scene, fluid);
   if (type == "ball") read_ball(region, scene, fluid);
   if (type == "inside") read_inside(region, scene, fluid);
+  read_without(region, scene, fluid);
+  read_packing(section, scene);
   read_jitter(section, scene);
 }
 

@@ -73,6 +73,12 @@ bool inside_ball(const BallCase& ball, const Point& x) {
   return std::hypot(x[0] - ball.centre[0], x[1] - ball.centre[1], x[2] - ball.centre[2]) < ball.radius;
 }
 
+bool fills_closed_shape(const Scene& scene) {
+  return !scene.fluid.inside.empty() && std::none_of(scene.boxes.begin(), scene.boxes.end(), [&](const BoxCase& box) {
+    return box.name == scene.fluid.inside;
+  });
+}
+
 double reach_of(const Shape& shape) {
   if (!shape.geometry->motion) return 0;
   const Point &about = shape.geometry->motion->about, &k = shape.geometry->motion->axis;

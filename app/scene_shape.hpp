@@ -31,6 +31,9 @@ std::vector<std::array<double, 2>> plate_section(const PlateCase& plate, int dim
 /// True when the point is inside the closed polyline; on it, either.
 bool inside_polyline(const PolylineCase& line, const Point& x);
 
+/// Whether the fluid fills the inside of a closed polyline or mesh, to which no lattice fits.
+bool fills_closed_shape(const Scene& scene);
+
 /// True when the point is closer to the centre than the radius.
 bool inside_ball(const BallCase& ball, const Point& x);
 

@@ -211,10 +211,11 @@ void add_joints(const WallFaces& walls, WallPanels& made, Corner& corner_of, coo
       q.blend = std::max(0.0, std::min(M_PI / 4, M_PI - angle));
       corner_of.joints.push_back(static_cast<int>(made.joints.size()));
       made.joints.push_back(q);
-      const bool bend = f.bends && g.bends && angle > bluntest;
+      const bool bend = angle > bluntest && (f.body == g.body || (f.bends && g.bends));
       if (M_PI - angle > parallel && !bend) continue;
-      // Flat, or the bend of a wall that bends: inside is on both sides of it. On the outer side of a bend no path meets
-      // either panel in a narrow wedge; there the one that is nearer stands for both.
+      // Flat, or one of the many edges of a wall that is round, or bends: inside is on both sides of it. On the outer side of
+      // a bend no path meets either panel in a narrow wedge; there the one that is nearer stands for both. Without that a
+      // particle in the wedge lacks its own image, and is drawn to the edge.
       put(q.across, b.dot(n) < 0 ? n : Vector(-n));
       q.angle = 2 * M_PI - angle;
       q.blend = 0;

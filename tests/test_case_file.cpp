@@ -308,7 +308,7 @@ time_step = 0.002
   CHECK(scene.polylines.at(0).points.at(1) == Point{0.2, 0, 0});
   CHECK(scene.fluid.max == Point{0.4, 0.15, 0});
   CHECK(scene.viscosity.at(0).no_slip == Words{"hull"});
-  CHECK(contains(plan_lines(plan_of(scene), scene).front(), "at most 140 particles"));
+  CHECK(contains(plan_lines(plan_of(scene), scene).front(), "at most 150 particles"));
 }
 
 TEST_CASE("a closed surface from a file is a tank that moves and is filled", "[unit][case]") {

@@ -264,3 +264,18 @@ TEST_CASE("a box of triangles has five walls, eight edges and four corners", "[u
   CHECK(made.panels.size() == 5);
   CHECK(made.mirrors.size() == 5 + 8 + 4);
 }
+
+TEST_CASE("beyond an outer edge of a round wall a particle sees itself as beside it", "[unit][corners]") {
+  for (const double bend : {5.0, 10.0, 19.0}) {  // degrees; a path round an edge of more than 20 is a corner's
+    const double half = bend / 2 * degree, depth = 0.04;
+    for (const int bodies : {1, 2}) {
+      const WallFaces walls = walls_of({segment(-std::cos(half), -std::sin(half), 0, 0),
+                                        segment(0, 0, std::cos(half), -std::sin(half), bodies - 1)});
+      for (const double part : {0.0, 0.3, -0.3, 0.9}) {  // of the wedge in which no path meets a panel
+        const Fluid fluid = fluid_at({{depth * std::sin(part * half), depth * std::cos(part * half), 0}}, walls);
+        const double n = host(fluid.particles.number_density)(0), own = fluid.density.weight(real(2 * depth));
+        CHECK(n == (bodies == 1 ? Approx(own).epsilon(0.02) : Approx(0).margin(1e-12)));
+      }
+    }
+  }
+}

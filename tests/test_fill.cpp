@@ -85,12 +85,6 @@ TEST_CASE("particles that are shaken stay in their region and out of plates", "[
   CHECK(stayed > 0);
 }
 
-TEST_CASE("jitter is refused where particles are spread", "[unit][fill]") {
-  const std::vector<std::string> jitter{"fluid.0.jitter=0.1"};
-  CHECK_THROWS_WITH(scene_of("hydrostatic/turned.toml", jitter), Catch::Contains("is lost in \"tank\""));
-  CHECK_NOTHROW(flat({"fluid.0.region={type=\"inside\", wall=\"tank\", level=0.2}", "fluid.0.jitter=0.1"}));
-}
-
 TEST_CASE("a ball has as many particles as its volume has room for, symmetric about its centre", "[unit][fill]") {
   for (const bool is_deep : {false, true}) {
     const int dim = is_deep ? 3 : 2;
