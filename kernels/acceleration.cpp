@@ -81,8 +81,9 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
         if (smooths) smoother.start(i);
         auto straightener = crooked;
         Vec<Dim, Pack> sum{}, fitted_sum{};
+        [[maybe_unused]] const Fits<Dim>& all = fits;  // named here, as nvcc takes no first capture from what is only compiled if fitted
         Fit<Dim> fit;
-        if constexpr (fitted) fit = fits.of(i);
+        if constexpr (fitted) fit = all.of(i);
         near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
           const Pack r2 = dot(r, r);
           const Pack weight = zero_unless(r2 >= touching, image.weight(w, r2)) * per_n0;

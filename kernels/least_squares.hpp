@@ -71,14 +71,14 @@ struct Fit {
 
   /// What f_j - f_i of a neighbour or image at r counts in derivative m; `counts`: with which share it is seen at all.
   template <class Share>
-  KOKKOS_INLINE_FUNCTION Pack factor(int m, const FitBasis<Dim>& P, const Pack& r2, const Share& counts) const {
+  KOKKOS_INLINE_FUNCTION Pack factor(int m, const FitBasis<Dim>& P, const Pack& r2, Share counts) const {
     Pack sum{};
     for (int k = 0; k < terms; ++k) sum += coefficient[m * terms + k] * P.term[k];
     return counts * phi(r2) * sum;
   }
   /// The same of the gradient.
   template <class Share>
-  KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> slope(const Vec<Dim, Pack>& r, const Share& counts) const {
+  KOKKOS_INLINE_FUNCTION Vec<Dim, Pack> slope(const Vec<Dim, Pack>& r, Share counts) const {
     const FitBasis<Dim> P(r);
     const Pack scale = counts * phi(dot(r, r));
     Vec<Dim, Pack> q{};
@@ -90,7 +90,7 @@ struct Fit {
   }
   /// The same of the Laplacian.
   template <class Share>
-  KOKKOS_INLINE_FUNCTION Pack bend(const Vec<Dim, Pack>& r, const Share& counts) const {
+  KOKKOS_INLINE_FUNCTION Pack bend(const Vec<Dim, Pack>& r, Share counts) const {
     return factor(Dim, FitBasis<Dim>(r), dot(r, r), counts);
   }
 };
