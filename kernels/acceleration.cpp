@@ -81,7 +81,8 @@ void accelerate_in(const Fluid& fluid, Survey& survey, const Rates& rates, const
         if (smooths) smoother.start(i);
         auto straightener = crooked;
         Vec<Dim, Pack> sum{}, fitted_sum{};
-        [[maybe_unused]] const Fits<Dim>& all = fits;  // named here, as nvcc takes no first capture from what is only compiled if fitted
+        [[maybe_unused]] const Fits<Dim>& all =
+            fits;  // named here, as nvcc takes no first capture from what is only compiled if fitted
         Fit<Dim> fit;
         if constexpr (fitted) fit = all.of(i);
         near.for_each_neighbour(i, [&](const IndexPack& j, const Vec<Dim, Pack>& r, const auto& image) {
