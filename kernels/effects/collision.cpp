@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "kernels/effects/effect.hpp"
-#include "kernels/wall_stop.hpp"
 
 namespace greenwater {
 namespace {
@@ -170,14 +169,11 @@ void collide_in(const Close<Dim>& close, const Fluid& fluid, real distance, real
       });
 }
 
-// They move on with the change, no further than walls let them. Returns the longest way that anybody has gone [m].
+// Returns the longest way that anybody has gone [m].
 template <int Dim>
 real move_on_in(const Fluid& fluid, const VectorField& du, real dt, const ScalarField& way) {
   const auto x = fluid.particles.position;
   const auto u = fluid.particles.velocity;
-  const auto walls = fluid.walls;
-  const auto grid = fluid.grid.shape();
-  const Sweep stand{0, 0};
   real longest = 0;
   Kokkos::parallel_reduce(
       "greenwater::collision_move", Range(0, fluid.particles.count),
@@ -185,13 +181,10 @@ real move_on_in(const Fluid& fluid, const VectorField& du, real dt, const Scalar
         const auto change = load<Dim>(du, i);
         const real change2 = dot(change, change);
         if (change2 == 0) return;
-        auto ui = load<Dim>(u, i);
-        Vec<Dim, coord> dx;
         for (int d = 0; d < Dim; ++d) {
-          ui[d] += change[d];
-          dx[d] = coord(dt) * change[d];
+          u(i, d) += change[d];
+          x(i, d) += dt * change[d];
         }
-        move(walls, grid, stand, x, u, i, dx, ui);
         way(i) += dt * sqrt(change2);
         most = larger(most, way(i));
       },
