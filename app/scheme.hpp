@@ -32,7 +32,7 @@ class Scheme {
     return step(fluid, effects, none, dt);
   }
 
-  /// Asks for the reaction of a body (kernels/reaction.hpp) in every report from now on; returns its place there, or -1
+  /// Asks for the reaction of a body (kernels/operators/rigid_walls.hpp) in every report from now on; returns its place there, or -1
   /// from a scheme that knows none.
   virtual int watch(int /*body*/) { return -1; }
 };

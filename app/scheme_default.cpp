@@ -1,7 +1,7 @@
 #include "app/scheme.hpp"
 #include "core/region.hpp"
 #include "kernels/motion.hpp"
-#include "kernels/reaction.hpp"
+#include "kernels/operators/rigid_walls.hpp"
 #include "kernels/speed.hpp"
 
 namespace greenwater {
@@ -30,11 +30,12 @@ class Default : public Scheme {
 
     // 2  the pressure that keeps the flow free of divergence
     const real bulk = bulk_speed(fluid), U = options_.reference_speed > 0 ? options_.reference_speed : bulk;
-    survey(fluid, table_of(fluid), survey_options(coupler, U, bulk * dt / static_cast<real>(fluid.spacing)), dt,
+    survey(fluid, table_of(fluid), survey_options(fluid, coupler, U, bulk * dt / static_cast<real>(fluid.spacing)), dt,
            survey_);
+    if (looks_at_walls(fluid)) walls_.join(fluid, survey_, survey_.rhs, dt);
     report.solve = solve_pressure(fluid, coupler, dt);
 
-    for (const int body : watched_) report.reactions.push_back(wall_reaction(fluid, survey_, body));
+    report.reactions = walls_.reactions(fluid);
 
     // 3  what the pressure does, and what is smoothed
     options_.smoothing.speed = U;
@@ -50,10 +51,7 @@ class Default : public Scheme {
     return report;
   }
 
-  int watch(int body) override {
-    watched_.push_back(body);
-    return static_cast<int>(watched_.size()) - 1;
-  }
+  int watch(int body) override { return walls_.watch(body); }
 
  private:
   const LatticeTable& table_of(const Fluid& fluid) {
@@ -61,11 +59,13 @@ class Default : public Scheme {
     return table_;
   }
 
+  bool looks_at_walls(const Fluid& fluid) const { return walls_.any_watched() || rigid_walls_move(fluid.faces); }
+
   // U: the flow's speed [m/s]; way: of the bulk of the fluid in this step, x spacing.
-  SurveyOptions survey_options(const Coupler& coupler, real U, real way) const {
+  SurveyOptions survey_options(const Fluid& fluid, const Coupler& coupler, real U, real way) const {
     SurveyOptions options;
     options.drift_speed = options_.drift * U;
-    options.loads = !watched_.empty() || coupler.any();
+    options.loads = looks_at_walls(fluid) || coupler.any();
     options.shifts = options_.shifting > 0;
     if (options.shifts) options.shift_rate = smaller(options_.shifting * way, options_.most_shifting);
     return options;
@@ -117,7 +117,7 @@ class Default : public Scheme {
   std::unique_ptr<Collision> separation_;
   LatticeTable table_{};
   Survey survey_;
-  std::vector<int> watched_;  // bodies whose reaction is wanted
+  RigidWalls walls_;
 };
 
 }  // namespace

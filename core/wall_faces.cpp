@@ -31,6 +31,18 @@ Place face_normal(const FaceCorners& c, int dim) {
   return n;
 }
 
+std::array<double, 3> shares_at(const WallFace& face, int dim, const Place& place) {
+  const Place a = face.corner[0].position, r = minus(place, a), s = minus(face.corner[1].position, a);
+  if (dim == 2) {
+    const double t = dot(r, s) / dot(s, s);
+    return {1 - t, t, 0};
+  }
+  const Place q = minus(face.corner[2].position, a);
+  const double ss = dot(s, s), sq = dot(s, q), qq = dot(q, q), det = ss * qq - sq * sq;
+  const double t = (qq * dot(r, s) - sq * dot(r, q)) / det, u = (ss * dot(r, q) - sq * dot(r, s)) / det;
+  return {1 - t - u, t, u};
+}
+
 coord distance_to_face(const FaceCorners& c, int dim, const Place& x) {
   if (dim == 2) return distance_to_segment(c[0], c[1], x);
   const Place n = face_normal(c, 3);

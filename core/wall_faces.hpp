@@ -41,6 +41,10 @@ FaceCorners corners_of(const WallFace& face);
 /// Unit normal: to the left of the segment, or by the right-hand rule of the triangle.
 std::array<coord, 3> face_normal(const FaceCorners& corner, int dim);
 
+/// The shares of the corners at a place of the face's plane; their sum is 1. What is linear along the face is the sum of its
+/// values at the corners, each times its share.
+std::array<double, 3> shares_at(const WallFace& face, int dim, const std::array<coord, 3>& place);
+
 /// Distance of a point to the nearest point of the segment or triangle [m].
 coord distance_to_face(const FaceCorners& corner, int dim, const std::array<coord, 3>& x);
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/check.hpp"
-#include "coupling/wall_rows.hpp"
 #include "fem/modes.hpp"
 
 namespace greenwater {
@@ -12,11 +11,6 @@ namespace {
 
 Reading reading_of(LoadReading load) {
   return load == LoadReading::kernel_average ? Reading::average : Reading::neumann;
-}
-
-// div(u) per push: the pressure's source is -(rho / dt) of it, and a push is a force per pressure of a volume l0^d.
-double per_push(const Fluid& fluid, double dt) {
-  return fluid.rho / (dt * std::pow(fluid.spacing, fluid.particles.dim));
 }
 
 void put(const Eigen::RowVectorXd& from, double factor, real* to) {
@@ -91,9 +85,9 @@ void Coupler::foresee(Fluid& fluid, double dt) {
     one.applied = one.load;
     march(one, one.load, dt);
     one.foreseen = one.body.march->state();
-    // What it would be without load, as the answer tells it: what the answer is wrong by is then that of the load's change.
-    if (options_.way == CouplingWay::joint) one.speed -= one.answer.matrix() * one.load;
     one.base = one.speed;
+    // What it would be without load, as the answer tells it: what the answer is wrong by is then that of the load's change.
+    if (options_.way == CouplingWay::joint) one.base -= one.answer.matrix() * one.load;
     give_speeds(fluid, one, dt);
   }
 }
@@ -101,14 +95,41 @@ void Coupler::foresee(Fluid& fluid, double dt) {
 void Coupler::join(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt) {
   if (!any()) return;
   Region region("coupling");
-  std::vector<AddedEntry> rows;
-  for (const Coupled& one : bodies_)
-    add_wall_rows(wall_pushes(fluid, survey, one.motion.body), fluid.faces, one.body.surface, one.body.first_face,
-                  one.first_unknown, rows);
-  term_.set_rows(unknowns_, rows);
+  look_at_walls(fluid, survey, system, dt);
   if (options_.way != CouplingWay::joint) return;
   hand_over_answers(fluid, dt);
   system.set_added(&term_);
+  Eigen::VectorXd change(unknowns_);
+  for (const Coupled& one : bodies_)
+    change.segment(one.first_unknown, one.base.size()) = one.base + one.answer.matrix() * one.known - one.speed;
+  change_source(fluid, system, change, dt);
+}
+
+/// D, and the difference between what it makes of the walls' speeds and what the survey has made of them.
+void Coupler::look_at_walls(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt) {
+  const int dim = fluid.faces.dim;
+  std::vector<AddedEntry> rows;
+  for (Coupled& one : bodies_) {
+    const auto pushes = wall_pushes(fluid, survey, one.motion.body);
+    if (one.quadrature.points().empty())
+      one.quadrature =
+          quadrature_of(one.body.surface, fluid.faces, one.body.first_face, fluid.grid.shape(), fluid.spacing);
+    else
+      one.quadrature.move_to(fluid.faces);
+    one.quadrature.weigh(pushes);
+    add_wall_rows(pushes, one.quadrature, one.body.surface, dim, one.body.first_face, one.first_unknown, rows);
+    one.known = known_load(pushes, one.quadrature, one.body.surface, dim, one.body.first_face, fluid.rho);
+    swept_.gather(pushes, one.quadrature, [&](int face, const Triple& x) {
+      const auto shares = shares_at(fluid.faces.faces[face], dim, x);
+      const auto& corners = one.body.surface.corner_of_face()[face - one.body.first_face];
+      Triple v{};
+      for (int e = 0; e < dim; ++e)
+        for (int d = 0; d < dim; ++d) v[d] += shares[e] * one.speed[dim * corners[e] + d];
+      return v;
+    });
+  }
+  term_.set_rows(unknowns_, rows);
+  swept_.add_to(system.rhs(), system.fixed(), source_per_volume(fluid, dt));
 }
 
 void Coupler::renew_answers(double dt) {
@@ -120,7 +141,7 @@ void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
   if (!answers_changed_ && dt == handed_dt_) return;
   answers_changed_ = false;
   handed_dt_ = dt;
-  const double scale = per_push(fluid, dt);
+  const double scale = -source_per_volume(fluid, dt);
   std::vector<real> C(static_cast<std::size_t>(unknowns_) * unknowns_, 0), leading;
   for (const Coupled& one : bodies_) {
     for (Eigen::Index row = 0; row < one.answer.matrix().rows(); ++row)
@@ -141,7 +162,7 @@ void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
     term_.feel(fluid.particles.pressure, felt_.device);
     felt_.pull();
     for (Coupled& one : bodies_)
-      for (Eigen::Index i = 0; i < one.load.size(); ++i) one.load[i] = felt_.host(one.first_unknown + i);
+      for (Eigen::Index i = 0; i < one.load.size(); ++i) one.load[i] = felt_.host(one.first_unknown + i) + one.known[i];
     return;
   }
   for (Coupled& one : bodies_)
@@ -184,7 +205,7 @@ Eigen::VectorXd Coupler::relaxed(const Eigen::VectorXd& residual) {
 void Coupler::change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt) {
   for (Eigen::Index i = 0; i < by.size(); ++i) change_.host(i) = static_cast<real>(by[i]);
   change_.push();
-  term_.add_source(system.fixed(), static_cast<real>(-per_push(fluid, dt)), change_.device, system.rhs());
+  term_.add_source(system.fixed(), source_per_volume(fluid, dt), change_.device, system.rhs());
 }
 
 /// A structure that the fluid has not touched and does not touch has gone its way already.
@@ -323,7 +344,7 @@ void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSo
     change_.push();
     Kokkos::deep_copy(b, real(0));
     Kokkos::deep_copy(p, real(0));
-    term_.add_source(system.fixed(), static_cast<real>(-per_push(fluid, 1)), change_.device, b);
+    term_.add_source(system.fixed(), source_per_volume(fluid, 1), change_.device, b);
     PressureSystem still({});
     still.assemble(fluid, b, system.diagonal(), system.fixed());
     solver.solve(still, p);

@@ -20,6 +20,8 @@
 #include "coupling/interface_ledger.hpp"
 #include "coupling/structure_answer.hpp"
 #include "coupling/surface_load.hpp"
+#include "coupling/wall_rows.hpp"
+#include "kernels/operators/rigid_walls.hpp"
 #include "kernels/pressure_solver.hpp"
 #include "kernels/survey.hpp"
 
@@ -34,11 +36,13 @@ class Coupler {
   /// Whether a step may have to be made again from its start, walls and all (classic scheme).
   bool repeats_steps() const { return any() && options_.way == CouplingWay::aitken; }
 
-  /// From t to t + dt, which the fluid has not begun: structures march under the load at t. joint, aitken: as a first guess;
-  /// of the joint march the part that the load makes of it is taken off again, as it is part of the solve.
+  /// From t to t + dt, which the fluid has not begun: structures march under the load at t, and walls get the speeds of that
+  /// march; joint, aitken: as a first guess.
   void foresee(Fluid& fluid, double dt);
 
-  /// After the rows and the survey of this step: rows of the walls, and with `joint` D C D^T into the operator.
+  /// After the rows and the survey of this step: rows of the walls, and what they sweep beyond what the survey has seen into
+  /// the source. With `joint` D C D^T goes into the operator, and what the load at t makes of the speeds goes out of the
+  /// source, as it is part of the solve.
   void join(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt);
 
   /// After a solve of the default scheme. Corrects the right side where it says so.
@@ -83,7 +87,7 @@ class Coupler {
   /// Of one structure, what lasts from step to step beside its march.
   struct Lasting {
     Eigen::VectorXd placed;   // displacement of the corners where the walls stand [m]
-    Eigen::VectorXd base;     // speeds in the right side of the solve [m/s]
+    Eigen::VectorXd base;     // speeds in the right side of the solve, as they are without any load [m/s]
     Eigen::VectorXd speed;    // of the walls in this step [m/s]
     Eigen::VectorXd before;   // in the last one
     Eigen::VectorXd load;     // on the corners
@@ -97,9 +101,11 @@ class Coupler {
     ElasticBody body;
     int first_unknown = 0;
     StructureAnswer answer;  // C
-    Eigen::VectorXd mode;    // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
-    March::State start;      // of this step
-    March::State foreseen;   // at its end, under the load of the last one
+    WallQuadrature quadrature;
+    Eigen::VectorXd known;  // part of the load that does not wait for the pressure
+    Eigen::VectorXd mode;   // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
+    March::State start;     // of this step
+    March::State foreseen;  // at its end, under the load of the last one
     CornerMotion motion;
     Exchange<CoordField> velocity, acceleration;
   };
@@ -112,6 +118,7 @@ class Coupler {
   void read_loads(const Fluid& fluid, const PressureSystem* system);
   void renew_answers(double dt);
   void hand_over_answers(const Fluid& fluid, double dt);
+  void look_at_walls(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt);
   void change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt);
   Eigen::VectorXd residual() const;
   Eigen::VectorXd relaxed(const Eigen::VectorXd& residual);
@@ -126,6 +133,7 @@ class Coupler {
   bool answers_changed_ = false;  // since they were handed over
   double handed_dt_ = 0;          // step with which they were [s]
   Exchange<ScalarField> felt_, change_;
+  SweptVolume swept_;
   PointSampler sampler_;
   Eigen::VectorXd last_residual_;
   double relaxation_ = 0;

@@ -1,14 +1,10 @@
 #include "coupling/wall_rows.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 namespace greenwater {
 namespace {
-
-using Point = std::array<double, 3>;
-
-Point minus(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /// Sums the entries of one particle, unknown by unknown.
 class OneParticle {
@@ -41,29 +37,41 @@ class OneParticle {
 
 }  // namespace
 
-std::array<double, 3> shares_at(const WallFace& face, int dim, const Point& place) {
-  const Point a = face.corner[0].position, r = minus(place, a), s = minus(face.corner[1].position, a);
-  if (dim == 2) {
-    const double t = dot(r, s) / dot(s, s);
-    return {1 - t, t, 0};
-  }
-  const Point q = minus(face.corner[2].position, a);
-  const double ss = dot(s, s), sq = dot(s, q), qq = dot(q, q), det = ss * qq - sq * sq;
-  const double t = (qq * dot(r, s) - sq * dot(r, q)) / det, u = (ss * dot(r, q) - sq * dot(r, s)) / det;
-  return {1 - t - u, t, u};
+WallQuadrature quadrature_of(const WetSurface& surface, const WallFaces& walls, int first_face, const GridShape& grid,
+                             double spacing) {
+  std::vector<int> faces(surface.corner_of_face().size());
+  std::iota(faces.begin(), faces.end(), first_face);
+  const WetSide wet = WetSurface::outward(walls.dim) > 0 ? WetSide::along_normal : WetSide::against_normal;
+  return WallQuadrature(walls, faces, wet, grid, spacing);
 }
 
-void add_wall_rows(const std::vector<WallPush>& pushes, const WallFaces& walls, const WetSurface& surface,
-                   int first_face, int first_unknown, std::vector<AddedEntry>& rows) {
-  OneParticle sums(first_unknown, walls.dim * surface.corners());
+void add_wall_rows(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, const WetSurface& surface,
+                   int dim, int first_face, int first_unknown, std::vector<AddedEntry>& rows) {
+  OneParticle sums(first_unknown, dim * surface.corners());
   for (std::size_t k = 0; k < pushes.size(); ++k) {
     const WallPush& push = pushes[k];
-    const auto share = shares_at(walls.faces[push.face], walls.dim, push.place);
-    const auto& corners = surface.corner_of_face()[push.face - first_face];
-    for (int e = 0; e < walls.dim; ++e)
-      for (int d = 0; d < walls.dim; ++d) sums.add(walls.dim * corners[e] + d, share[e] * push.push[d]);
+    quadrature.for_each(push, [&](int q, const Triple&, double weight) {
+      const QuadraturePoint& point = quadrature.points()[q];
+      const auto& corners = surface.corner_of_face()[point.face - first_face];
+      for (int e = 0; e < dim; ++e)
+        for (int d = 0; d < dim; ++d) sums.add(dim * corners[e] + d, weight * point.shares[e] * point.normal[d]);
+    });
     if (k + 1 == pushes.size() || pushes[k + 1].particle != push.particle) sums.hand_over(push.particle, rows);
   }
+}
+
+Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
+                           const WetSurface& surface, int dim, int first_face, double rho) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(dim * surface.corners());
+  for (const WallPush& push : pushes)
+    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+      const QuadraturePoint& point = quadrature.points()[q];
+      const auto& corners = surface.corner_of_face()[point.face - first_face];
+      const double size = weight * rho * dot(push.drive, from_particle);
+      for (int e = 0; e < dim; ++e)
+        for (int d = 0; d < dim; ++d) force[dim * corners[e] + d] += size * point.shares[e] * point.normal[d];
+    });
+  return force;
 }
 
 }  // namespace greenwater

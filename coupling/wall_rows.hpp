@@ -3,17 +3,23 @@
 
 #include "coupling/wet_surface.hpp"
 #include "kernels/added_term.hpp"
-#include "kernels/reaction.hpp"
+#include "kernels/operators/wall_quadrature.hpp"
 
 namespace greenwater {
 
-/// One force per pressure [m], in 3-D [m^2], for each particle and unknown that it pushes: number first_unknown + dim
-/// corner + d. A push is shared out to the corners of its face by the shape functions with which their velocities make
-/// that of its place. `first_face`: of the surface's faces among all walls. In the order of the particles.
-void add_wall_rows(const std::vector<WallPush>& pushes, const WallFaces& walls, const WetSurface& surface,
-                   int first_face, int first_unknown, std::vector<AddedEntry>& rows);
+/// The places of a wet surface, whose faces stand among all walls from `first_face` on.
+WallQuadrature quadrature_of(const WetSurface& surface, const WallFaces& walls, int first_face, const GridShape& grid,
+                             double spacing);
 
-/// The shares of the corners at a place of a segment (2-D) or triangle; their sum is 1.
-std::array<double, 3> shares_at(const WallFace& face, int dim, const std::array<double, 3>& place);
+/// D^T V: one force per pressure [m], in 3-D [m^2], for each particle and unknown that it pushes: number first_unknown + dim
+/// corner + d. What acts at a place is shared out to the corners of its face by the shape functions with which their
+/// velocities make that of the place. In the order of the particles.
+void add_wall_rows(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, const WetSurface& surface,
+                   int dim, int first_face, int first_unknown, std::vector<AddedEntry>& rows);
+
+/// What the pressure at the places is above that of the particles that push there, rho g . (x_q - x_i), as forces on the
+/// corners [N/m], in 3-D [N]: known before the pressure is.
+Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
+                           const WetSurface& surface, int dim, int first_face, double rho);
 
 }  // namespace greenwater

@@ -233,15 +233,15 @@ void survey_in(const Fluid& fluid, const LatticeTable& table, const SurveyOption
 
 void make_room(const Particles& p, const SurveyOptions& options, Survey& out) {
   const std::size_t room = p.id.extent(0);
+  if (options.loads && out.divergence_correction.extent(0) < room)
+    out.divergence_correction =
+        uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
   if (out.rhs.extent(0) >= room) return;
   out.rhs = uncleared<ScalarField>("greenwater::survey_rhs", room);
   out.diagonal = uncleared<ScalarField>("greenwater::survey_diagonal", room);
   out.fixed = uncleared<FlagField>("greenwater::survey_fixed", room);
   out.surface = uncleared<ScalarField>("greenwater::survey_surface", room);
   out.correction = uncleared<VectorField>("greenwater::survey_correction", room, p.dim * (p.dim + 1) / 2);
-  if (options.loads)
-    out.divergence_correction =
-        uncleared<VectorField>("greenwater::survey_divergence_correction", room, p.dim * (p.dim + 1) / 2);
   out.surface_point = uncleared<VectorField>("greenwater::survey_surface_point", room, p.dim);
   out.velocity_gradient = uncleared<VectorField>("greenwater::survey_velocity_gradient", room, p.dim * p.dim);
   if (!options.shifts) return;

@@ -17,7 +17,7 @@ struct SurveyOptions {
   real drift_speed = 0;          // c_s [m/s] with which density errors are undone: rho (c_s / l0)^2 (n - n^0) / n^0
   bool shifts = true;            // whether particles are shifted at all
   real shift_rate = 0;           // part of the stiffest disorder that is undone in this step; above 2 it would grow [-]
-  bool loads = false;            // keeps what wall_reaction() needs
+  bool loads = false;            // keeps what wall_pushes() needs
   bool keeps_volume = true;      // in the step as a whole, not only at its start: the term with tr (grad u*)^2
   real shift_limit = real(0.1);  // longest shift, x spacing
 };

@@ -7,7 +7,7 @@
 #include "kernels/acceleration.hpp"
 #include "kernels/biconjugate_gradient.hpp"
 #include "kernels/effects/effect.hpp"
-#include "kernels/reaction.hpp"
+#include "kernels/operators/rigid_walls.hpp"
 #include "tests/case_text.hpp"
 #include "tests/still_water.hpp"
 
@@ -158,12 +158,15 @@ TEST_CASE("with fits too the wall's reaction does the fluid's work", "[unit][hig
     fit(fluid);
     set_pressure(fluid, [&](const auto& x) { return depth_pressure(fluid, x); });
     const Survey found = surveyed(fluid, options);
+    RigidWalls walls;
+    walls.watch(0);
+    walls.join(fluid, found, found.rhs, dt);
     // The fluid rests: all divergence is the wall's.
     const auto b = host(found.rhs);
     const auto p = host(fluid.particles.pressure);
     double work = 0;
     for (int i = 0; i < fluid.particles.count; ++i) work += -b(i) * dt / fluid.rho * p(i) * std::pow(l0, dim);
-    const auto force = wall_reaction(fluid, found, 0);
+    const auto force = walls.reactions(fluid).front();
     CHECK(force[0] * v[0] + force[1] * v[1] + force[2] * v[2] == Approx(work).epsilon(1e-9));
   }
 }
