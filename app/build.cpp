@@ -162,7 +162,7 @@ Fluid build_fluid(const Scene& scene, const WallFaces& walls, Packing* packing) 
   return fluid;
 }
 
-Effects build_effects(const Scene& scene) {
+Effects build_effects(const Scene& scene, Fluid& fluid) {
   Effects effects;
   for (const ViscosityCase& c : scene.viscosity)
     effects.add(make_viscosity({static_cast<real>(c.kinematic), scene.mps.scheme != "classic"}));
@@ -181,6 +181,7 @@ Effects build_effects(const Scene& scene) {
       return f;
     }));
   }
+  effects.prepare(fluid);
   return effects;
 }
 

@@ -13,8 +13,8 @@ namespace greenwater {
 /// number of them.
 Fluid build_fluid(const Scene& scene, const WallFaces& walls, Packing* packing = nullptr);
 
-/// Just the effects that the scene names.
-Effects build_effects(const Scene& scene);
+/// Just the effects that the scene names; what they hold in the fluid is there from now on.
+Effects build_effects(const Scene& scene, Fluid& fluid);
 
 std::unique_ptr<Scheme> build_scheme(const Scene& scene, const Fluid& fluid);
 

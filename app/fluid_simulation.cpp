@@ -69,7 +69,7 @@ FluidSimulation::FluidSimulation(const Scene& scene)
       coupler_(
           build_coupler(scene, structures_, add_wet_surfaces(scene, structures_, walls_at_start_), walls_at_start_)),
       fluid_(build_fluid(scene, walls_at_start_, &packing_)),
-      effects_(build_effects(scene)),
+      effects_(build_effects(scene, fluid_)),
       scheme_(build_scheme(scene, fluid_)),
       step_length_(scene, structures_.empty() ? 0 : structures_.front().march_options().step),
       dt_(step_length_.next(fluid_, std::numeric_limits<double>::infinity())) {

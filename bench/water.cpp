@@ -121,7 +121,7 @@ std::vector<SolverChoice> chosen_solvers(const std::vector<std::string>& names) 
 Water::Water(const Scene& scene, const std::optional<State>& state)
     : scene_(scene),
       fluid_(build_fluid(scene, build_walls(scene))),
-      effects_(build_effects(scene)),
+      effects_(build_effects(scene, fluid_)),
       scheme_(build_scheme(scene, fluid_)) {
   if (state) put(*state);
 }
@@ -181,7 +181,7 @@ GridNodes nodes_in_use(const Fluid& fluid) {
 
 Fluid before_pressure(const Scene& scene, const Scene& cut, const State& state) {
   Fluid fluid = build_fluid(scene, build_walls(scene));
-  Effects effects = build_effects(scene);
+  Effects effects = build_effects(scene, fluid);
   put_particles(state, scene, fluid);
   const real dt = static_cast<real>(scene.mps.time_step);
   clear_acceleration(fluid);

@@ -35,10 +35,12 @@ constexpr int padded(int count) { return (count + 63) / 32 * 32; }
 /// Room for `count` particles, all fields zero, ids 0, 1, 2 ...
 Particles make_particles(int dim, int count);
 
-/// Makes `to` a copy of all fields, in its own memory, which is kept and only grown.
+/// Makes `to` a copy of all fields, in its own memory, which is kept and only grown. It takes over what extras there are:
+/// to put particles back is put_back() of kernels/moves.hpp.
 void copy(const Particles& from, Particles& to);
 
-/// Adds a vector field of zeros and returns its place in `extras`.
+/// Adds a vector field of zeros and returns its place in `extras`. Before the first step only: who keeps that place would
+/// lose its field when a step is undone.
 int add_extra(Particles& particles, const std::string& name, const std::string& unit);
 
 /// Re-orders particles; keeps its scratch memory, so that a steady step allocates nothing.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/check.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -73,7 +75,10 @@ void keep(const Particles& particles, Before& before) {
   find_places(before);
 }
 
-void put_back(const Before& before, Particles& particles) { copy(before.particles, particles); }
+void put_back(const Before& before, Particles& particles) {
+  expect(particles.extras.size() == before.particles.extras.size());
+  copy(before.particles, particles);
+}
 
 real longest_way(const Fluid& fluid, const Before& before) {
   return fluid.particles.dim == 2 ? longest_way_in<2>(fluid, before) : longest_way_in<3>(fluid, before);

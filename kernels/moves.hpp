@@ -14,7 +14,7 @@ struct Before {
 /// Makes `before` a copy; memory is kept and only grown.
 void keep(const Particles& particles, Before& before);
 
-/// All fields are again what they were, in the same order.
+/// All fields are again what they were, in the same order. They are the same fields: none may have been added since.
 void put_back(const Before& before, Particles& particles);
 
 /// The longest way that any particle has gone [m], but drops that fly by themselves: those with no more neighbours than

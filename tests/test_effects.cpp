@@ -92,6 +92,7 @@ TEST_CASE("every launch and allocation has a name of ours", "[unit][effects]") {
   effects.add(make_collision({}));
   effects.add(make_body_force(constant_force(1, 0)));
   Fluid fluid = water();
+  effects.prepare(fluid);
   for (int k = 0; k < 2; ++k) scheme->step(fluid, effects, real(1e-3));
   REQUIRE(ears.launched("greenwater::viscosity"));
   REQUIRE(ears.launched("greenwater::body_force"));
@@ -112,10 +113,31 @@ TEST_CASE("a steady step allocates nothing", "[unit][effects]") {
   effects.add(make_collision({}));
   effects.add(make_body_force(constant_force(0.1, 0)));
   Fluid fluid = water();
+  effects.prepare(fluid);
   for (int k = 0; k < 5; ++k) scheme->step(fluid, effects, real(1e-3));
   Ears ears;
   for (int k = 0; k < 5; ++k) scheme->step(fluid, effects, real(1e-3));
   CHECK(ears.allocations == std::vector<std::string>{});
+}
+
+TEST_CASE("what an effect holds of the fluid is there before the first step, and no step adds to it",
+          "[unit][effects]") {
+  Effects effects;
+  effects.add(make_viscosity({real(1e-6)}));
+  effects.add(make_collision({}));
+  effects.add(make_body_force(constant_force(0.1, 0)));
+  effects.add(make_wall_speeds([](WallFaces&, double) {}));
+  effects.add(make_moving_walls([](WallFaces&, double) {}));
+  Fluid fluid = water();
+  effects.prepare(fluid);
+  const std::size_t held = fluid.particles.extras.size();
+  REQUIRE(held == 1);
+  REQUIRE(fluid.body_force == 0);
+  const auto scheme = make_classic(classic());
+  for (int k = 0; k < 3; ++k) scheme->step(fluid, effects, real(1e-3));
+  CHECK(fluid.particles.extras.size() == held);
+  effects.prepare(fluid);  // again is the same
+  CHECK(fluid.particles.extras.size() == held);
 }
 
 TEST_CASE("viscosity slows a shear wave as it should", "[unit][effects]") {
@@ -185,7 +207,9 @@ TEST_CASE("a body force drives particles and the images' pressure alike", "[unit
   // Gravity given as a body force balances the same column as gravity itself.
   Fluid fluid = fluid_at(lattice(20, 30, l0), tank(), {.spacing = l0});
   clear_acceleration(fluid);
-  make_body_force(constant_force(0, -10))->apply(fluid, real(1e-3));
+  const auto force = make_body_force(constant_force(0, -10));
+  force->prepare(fluid);
+  force->apply(fluid, real(1e-3));
   CHECK(host(fluid.particles.acceleration)(100, 1) == Approx(-10));
   const auto x = host(fluid.particles.position);
   const auto p = Kokkos::create_mirror(fluid.particles.pressure);

@@ -123,7 +123,7 @@ std::vector<double> state_of(const FluidSimulation& simulation, int structures =
 /// Marches up to `steps`, where a step fails at any length.
 void check_nothing_is_left(const Scene& scene, int steps, int structures = 0) {
   FluidSimulation simulation(scene);
-  std::vector<double> before;
+  std::vector<double> before = state_of(simulation, structures);
   for (int k = 0; k < steps; ++k) {
     const std::vector<double> last = before;
     simulation.step();
@@ -175,6 +175,59 @@ TEST_CASE("nothing is left of a step that is undone", "[unit][undo]") {
                                                         "mps.time_step=0.003", failing_from(0.0075, 3)})),
                           3);
   }
+}
+
+TEST_CASE("the first step can be undone too, whatever effects hold", "[unit][undo][effects]") {
+  const std::vector<std::string> all{"effects.body_force.acceleration=[\"1\", \"0.5*x\"]",
+                                     "effects.viscosity.kinematic=1e-6", "effects.collision.distance=0.5",
+                                     "mps.pressure.max_iterations=1", "mps.undo.halvings=3"};
+  for (const char* scheme : {"default", "high", "classic"}) {
+    INFO(scheme);
+    std::vector<std::string> settings = all;
+    settings.push_back(text_of("mps.scheme=", scheme));
+    check_nothing_is_left(scene_of_text(on_rigid_plate, options_of(settings)), 0);
+  }
+}
+
+TEST_CASE("a first step that a body force makes too long is made again, and the force is as without", "[unit][undo]") {
+  const std::string strong = "effects.body_force.acceleration=[\"2e4\", \"0\"]";
+  FluidSimulation simulation(scene_of_text(on_rigid_plate, options_of({strong})));
+  simulation.step();
+  REQUIRE(!undone_of(simulation.facts()).empty());
+  FluidSimulation other(scene_of_text(on_rigid_plate, options_of({strong})));
+  other.step_of(simulation.dt());
+  REQUIRE(undone_of(other.facts()).empty());
+  CHECK(state_of(simulation) == state_of(other));
+}
+
+TEST_CASE("a step that the classic scheme repeats with its structures keeps what effects hold",
+          "[unit][undo][effects]") {
+  const std::string wet = "fluid.0.region={type=\"box\", min=[0.4, 0], max=[0.7, 0.2]}";
+  FluidSimulation simulation(scene_of_text(
+      on_elastic_plate, options_of({wet, "mps.scheme=classic", "coupling.scheme=aitken", "mps.undo.halvings=0",
+                                    "coupling.tolerance=1e-9", "effects.body_force.acceleration=[\"1\", \"0\"]"})));
+  for (int k = 0; k < 3; ++k) {
+    simulation.step();
+    CHECK(simulation.coupler().passes() > 1);
+    REQUIRE(simulation.fluid().particles.extras.size() == 1);
+    CHECK(host(simulation.fluid().particles.extras[0].values)(7, 0) == 1);
+  }
+}
+
+TEST_CASE("the program ends with a message when its first step is undone to the last", "[unit][undo][program]") {
+  if (!program_is_there()) return;
+  const TemporaryFolder folder;
+  write_text(folder / "small.toml", small_case() + "[effects.body_force]\nacceleration = [\"1.0\", \"0\"]\n");
+  const Answer stall =
+      run_program({"run", "small.toml", "-o", "r", "-q", "--set", "mps.pressure.max_iterations=1"}, folder);
+  INFO(stall.out << stall.err);
+  CHECK(stall.code == 3);
+  CHECK(contains(stall.err, "undone each time"));
+  const Answer strong = run_program(
+      {"run", "small.toml", "-o", "s", "-q", "--set", "effects.body_force.acceleration=[\"1e4\", \"0\"]"}, folder);
+  INFO(strong.out << strong.err);
+  CHECK((strong.code == 0 || strong.code == 3));
+  CHECK(contains(text_in(folder / "s/run.log"), "was undone and is tried again"));
 }
 
 TEST_CASE("a step that was undone and made again is one that was short from the start", "[unit][undo]") {

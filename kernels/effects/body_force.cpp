@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "core/check.hpp"
 #include "kernels/effects/effect.hpp"
 
 namespace greenwater {
@@ -19,14 +20,17 @@ class BodyForce : public Effect {
   std::string_view name() const override { return "body_force"; }
   Stage stage() const override { return Stage::force; }
 
+  void prepare(Fluid& fluid) override {
+    Particles& p = fluid.particles;
+    if (fluid.body_force < 0) fluid.body_force = add_extra(p, "body_force", "m/s^2");
+    x_ = Kokkos::create_mirror(p.position);
+    u_ = Kokkos::create_mirror(p.velocity);
+    f_ = Kokkos::create_mirror(p.extras[fluid.body_force].values);
+  }
+
   void apply(Fluid& fluid, real) override {
     Particles& p = fluid.particles;
-    if (fluid.body_force < 0) {
-      fluid.body_force = add_extra(p, "body_force", "m/s^2");
-      x_ = Kokkos::create_mirror(p.position);
-      u_ = Kokkos::create_mirror(p.velocity);
-      f_ = Kokkos::create_mirror(p.extras[fluid.body_force].values);
-    }
+    expect(fluid.body_force >= 0 && x_.extent(0) == p.position.extent(0));  // prepared
     const VectorField& values = p.extras[fluid.body_force].values;
     Kokkos::deep_copy(x_, p.position);
     Kokkos::deep_copy(u_, p.velocity);

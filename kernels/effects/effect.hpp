@@ -27,6 +27,9 @@ class Effect {
   virtual ~Effect() = default;
   virtual std::string_view name() const = 0;
   virtual Stage stage() const = 0;
+  /// Before the first step: adds to the fluid what the effect holds there (fields, and their places). A step that is undone
+  /// puts back what was there when it began, so nothing of the fluid may come to be inside a step.
+  virtual void prepare(Fluid& /*fluid*/) {}
   virtual void apply(Fluid& fluid, real dt) = 0;
 };
 
@@ -35,6 +38,12 @@ class Effects {
   void add(std::unique_ptr<Effect> effect) {
     auto& list = list_[static_cast<std::size_t>(effect->stage())];
     list.push_back(std::move(effect));
+  }
+
+  /// Before the first step of this fluid.
+  void prepare(Fluid& fluid) {
+    for (auto& list : list_)
+      for (auto& effect : list) effect->prepare(fluid);
   }
 
   void run(Stage stage, Fluid& fluid, real dt) {
@@ -82,7 +91,7 @@ std::unique_ptr<Collision> make_collision(const CollisionOptions& options);
 using ForceField =
     std::function<std::array<double, 3>(const std::array<double, 3>& x, const std::array<double, 3>& u, double t)>;
 
-/// Adds a force per mass to that of gravity, evaluated on the host for each particle and step.
+/// Adds a force per mass to that of gravity, evaluated on the host for each particle and step. It needs prepare().
 std::unique_ptr<Effect> make_body_force(ForceField force);
 
 /// Puts the corners of the faces where they are at a time [s]; velocities and accelerations are left alone.
