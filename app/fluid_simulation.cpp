@@ -83,6 +83,7 @@ FluidSimulation::FluidSimulation(const Scene& scene)
   // Potential energy is counted from the lowest corner along gravity, so that it is positive inside the scene.
   const Extent extent = scene_extent(scene_, fluid_.faces);
   for (int d = 0; d < 3; ++d) potential_zero_[d] = scene_.gravity[d] > 0 ? extent.high[d] : extent.low[d];
+  at_start_ = fluid_.particles.count;
   first_energy_ = energy(fluid_sums(fluid_, potential_zero_));
 }
 
@@ -160,15 +161,16 @@ std::string FluidSimulation::stall_text(const StepReport& report) const {
 }
 
 void FluidSimulation::look_after(const StepReport& report) {
-  retired_ += report.departed.outside;
+  const std::int64_t lost_now = lost() - told_lost_;
+  told_lost_ = lost();
   if (report.stopped > 0)
     note("crossing", text_of(report.stopped, " particles were stopped on their way through a wall"), report.stopped);
-  if (report.departed.outside > 0)
+  if (lost_now > 0)
     note("lost",
-         text_of("particles left the domain and were retired; so far ", retired_, " with ",
-                 static_cast<double>(retired_) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
+         text_of("particles left the domain and were retired; so far ", lost(), " with ",
+                 static_cast<double>(lost()) * fluid_.rho * std::pow(fluid_.spacing, scene_.dimension),
                  scene_.dimension == 2 ? " kg/m" : " kg"),
-         report.departed.outside);
+         lost_now);
   look_after_coupling();
   if (!report.solve.converged) return note("stall", stall_text(report), 1);
   if (!report.solve.recovery.empty())
@@ -208,7 +210,7 @@ StepFacts FluidSimulation::facts() {
   facts.energy_ratio = first_energy_ > 0 ? energy(sums) / first_energy_ : 1;
   facts.density_error = sums.density_error;
   facts.particles = fluid_.particles.count;
-  facts.lost = retired_;
+  facts.lost = lost();
   if (facts.cfl > scene_.mps.cfl_warn)
     note("cfl", text_of("max speed x dt / spacing = ", facts.cfl, " is above mps.cfl_warn = ", scene_.mps.cfl_warn), 1);
   facts.notices = std::exchange(notices_, {});

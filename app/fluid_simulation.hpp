@@ -68,6 +68,8 @@ class FluidSimulation : public Simulation {
   void look_after_coupling();
   void add_ledger(std::vector<double>& row) const;
   double sample_structure(const ProbeCase& probe);
+  /// Particles that are there no more. What a step that is undone has retired is back, so nobody counts them one by one.
+  std::int64_t lost() const { return at_start_ - fluid_.particles.count; }
   double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
 
   Scene scene_;
@@ -87,7 +89,9 @@ class FluidSimulation : public Simulation {
   std::vector<int> reactions_;                          // of each probe; place in the step's report, or -1
   Point potential_zero_{};
   double first_energy_ = 0;
-  std::int64_t steps_ = 0, retired_ = 0;
+  std::int64_t steps_ = 0;
+  std::int64_t at_start_ = 0;   // particles
+  std::int64_t told_lost_ = 0;  // those that a notice has told of
   StepReport last_;
   std::vector<Notice> notices_;
 };

@@ -214,6 +214,28 @@ TEST_CASE("a step that the classic scheme repeats with its structures keeps what
   }
 }
 
+TEST_CASE("who leaves while steps are undone is counted once: particles and lost are what there was", "[unit][undo]") {
+  for (const char* scheme : {"default", "classic"}) {
+    INFO(scheme);
+    FluidSimulation simulation(
+        scene_of_text(on_rigid_plate, options_of({"domain.min=[-0.1, -0.1]", "domain.max=[0.2005, 0.6]",
+                                                  "mps.undo.halvings=8", text_of("mps.scheme=", scheme)})));
+    const std::int64_t start = simulation.facts().particles;
+    std::int64_t told = 0, left_in_undone = 0;
+    for (int k = 0; k < 120; ++k) {
+      const std::int64_t before = simulation.facts().lost;
+      simulation.step_of(k > 20 && k % 2 == 0 ? 0.02 : simulation.dt());
+      const StepFacts facts = simulation.facts();
+      for (const Notice& notice : facts.notices)
+        if (notice.kind == "lost") told += notice.count;
+      if (!undone_of(facts).empty()) left_in_undone += facts.lost - before;
+      REQUIRE(facts.particles + facts.lost == start);
+      REQUIRE(told == facts.lost);
+    }
+    CHECK(left_in_undone > 0);
+  }
+}
+
 TEST_CASE("the program ends with a message when its first step is undone to the last", "[unit][undo][program]") {
   if (!program_is_there()) return;
   const TemporaryFolder folder;
