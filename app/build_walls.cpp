@@ -145,6 +145,7 @@ void repeat_walls(WallFaces& walls, const Scene& scene, int axis, std::size_t fi
   const double reach = 2 * mps.spacing * std::max({mps.radius_density, mps.radius_gradient, mps.radius_laplacian});
   std::vector<double> beyond;  // of each body: what must be covered on either side of the domain
   for (const WallBody& body : walls.bodies) beyond.push_back(reach + travel_of(scene, body.name, axis));
+  constexpr double most_copies = 1e5;  // of a wall
   const std::vector<WallFace> once(walls.faces.begin() + static_cast<std::ptrdiff_t>(first_face), walls.faces.end());
   for (const WallFace& face : once) {
     double from = face.corner[0].position[axis], to = from;
@@ -153,9 +154,11 @@ void repeat_walls(WallFaces& walls, const Scene& scene, int axis, std::size_t fi
       to = std::max(to, face.corner[e].position[axis]);
     }
     const double more = beyond[face.body];
-    const int first = static_cast<int>(std::ceil((low - more - to) / period));
-    const int last = static_cast<int>(std::floor((high + more - from) / period));
-    for (int k = first; k <= last; ++k) {
+    const double first = std::ceil((low - more - to) / period), last = std::floor((high + more - from) / period);
+    require_at(scene.repeats_place, last - first <= most_copies, "the wall \"", walls.bodies[face.body].name,
+               "\" would be repeated ", last - first, " times, as it goes or lies that many periods of ", period,
+               " m away from the domain; let it move less far, or put it inside");
+    for (double k = first; k <= last; ++k) {
       if (k == 0) continue;
       WallFace copy = face;
       copy.repeated = true;

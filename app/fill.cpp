@@ -7,9 +7,12 @@
 #include "app/random.hpp"
 #include "app/relaxed_start.hpp"
 #include "app/scene_shape.hpp"
+#include "core/whole.hpp"
 
 namespace greenwater {
 namespace {
+
+constexpr int most_cells = 1 << 29;  // along an axis
 
 // Cell centres of a lattice in the fluid's bounds, from `from` on.
 std::vector<Point> lattice(const FluidCase& fluid, const Point& from, double spacing, int dimension) {
@@ -29,7 +32,7 @@ std::vector<Point> lattice(const FluidCase& fluid, const Point& from, double spa
 // in cells, where centres are exact, so that nothing but the centre's own digits spoils the symmetry.
 std::vector<Point> lattice_in_ball(const BallCase& ball, double spacing, int dimension) {
   const double radius = ball.radius / spacing;
-  const int n = static_cast<int>(std::ceil(radius - 0.5)), nz = dimension == 3 ? n : 0;
+  const int n = whole_within(std::ceil(radius - 0.5), 0, most_cells), nz = dimension == 3 ? n : 0;
   const double middle_z = dimension == 3 ? 0.5 : 0;
   std::vector<Point> points;
   for (int k = -nz; k < std::max(nz, 1); ++k)

@@ -6,9 +6,12 @@
 #include <unordered_map>
 
 #include "app/random.hpp"
+#include "core/whole.hpp"
 
 namespace greenwater {
 namespace {
+
+constexpr int most_cells = 1 << 29;  // along an axis
 
 using Counts = std::array<int, 3>;
 
@@ -40,7 +43,7 @@ struct Lattice {
 Lattice lattice_for(const Scene& scene, double spacing) {
   Lattice lattice{scene.fluid, scene.dimension, {1, 1, 1}};
   for (int d = 0; d < scene.dimension; ++d)
-    lattice.cells[d] = std::max(1, static_cast<int>(std::lround((scene.fluid.max[d] - scene.fluid.min[d]) / spacing)));
+    lattice.cells[d] = whole_within(std::round((scene.fluid.max[d] - scene.fluid.min[d]) / spacing), 1, most_cells);
   return lattice;
 }
 
@@ -94,7 +97,7 @@ class Scattered {
   }
 
  private:
-  int index(double x) const { return static_cast<int>(std::floor(x / apart_)); }
+  int index(double x) const { return whole_within(std::floor(x / apart_), -most_cells, most_cells); }
   static std::uint64_t key(const Counts& cell) {
     std::uint64_t key = 0;
     for (const int k : cell) key = key << 21 ^ (static_cast<std::uint64_t>(k) & 0x1fffff);
@@ -132,8 +135,7 @@ std::vector<std::size_t> picked(std::vector<Candidate> candidates, std::size_t c
 int grade_of_gap(const Room& room, const Scene& scene, const Point& x, int most) {
   const double unit = scene.mps.spacing / 16;
   for (int d = 0; d < scene.dimension; ++d)
-    most =
-        std::min(most, static_cast<int>(std::min(x[d] - scene.fluid.min[d], scene.fluid.max[d] - x[d]) / unit + 1e-6));
+    most = whole_within(std::min(x[d] - scene.fluid.min[d], scene.fluid.max[d] - x[d]) / unit + 1e-6, 0, most);
   if (!room.edge_within(x, most * unit)) return most;
   int grade = 0;
   while (grade + 1 < most && !room.edge_within(x, (grade + 1) * unit)) ++grade;
@@ -173,7 +175,7 @@ void put_in(const Room& room, const Scene& scene, const Lattice& lattice, std::s
       const Point y = lattice.at(near);
       if (is_centre && room.holds(y)) nearest = std::min(nearest, std::hypot(x[0] - y[0], x[1] - y[1], x[2] - y[2]));
     }
-    const int merit = std::min(2 * gap, static_cast<int>(16 * nearest / scene.mps.spacing));
+    const int merit = whole_within(16 * nearest / scene.mps.spacing, 0, 2 * gap);
     candidates.push_back({x, merit, candidates.size()});
   });
   const double measure = static_cast<double>(points.size() + count) * std::pow(scene.mps.spacing, scene.dimension);

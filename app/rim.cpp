@@ -8,9 +8,12 @@
 #include "app/room.hpp"
 #include "app/scene_shape.hpp"
 #include "core/point_math.hpp"
+#include "core/whole.hpp"
 
 namespace greenwater {
 namespace {
+
+constexpr int most_sides = 1 << 29;
 
 void add_face(WallFaces& walls, const Point& a, const Point& b, const Point& c = {}) {
   WallFace face;
@@ -123,7 +126,7 @@ double rim_radius(const Scene& scene, const WallFaces& walls, double wanted) {
 void add_circle(const Scene& scene, const WallFaces& walls, WallFaces& closed) {
   const BallCase& ball = *scene.fluid.ball;
   constexpr double round = 2 * std::numbers::pi;
-  const int sides = std::max(24, static_cast<int>(std::ceil(round * ball.radius / scene.mps.spacing)));
+  const int sides = whole_within(std::ceil(round * ball.radius / scene.mps.spacing), 24, most_sides);
   const double angle = round / sides;
   const double radius = rim_radius(scene, walls, ball.radius * std::sqrt(angle / std::sin(angle)));
   const auto corner = [&](int k) {

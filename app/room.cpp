@@ -9,10 +9,13 @@
 #include "app/plate_frame.hpp"
 #include "app/random.hpp"
 #include "app/scene_shape.hpp"
+#include "core/whole.hpp"
 #include "fem/mesh_place.hpp"
 
 namespace greenwater {
 namespace {
+
+constexpr int most_cells = 1 << 29;  // along an axis
 
 /// Of a box, from a place in its frame, along the axis where it is farthest out: positive outside. Never more than the
 /// distance to the box, and inside just that to its sides.
@@ -136,7 +139,7 @@ double Room::measure() const {
   Cell cell{};
   for (int d = 0; d < dimension_; ++d) {
     const double width = fluid_.max[d] - fluid_.min[d];
-    cells[d] = std::max(1, static_cast<int>(std::lround(width / spacing_)));
+    cells[d] = whole_within(std::round(width / spacing_), 1, most_cells);
     cell.half[d] = width / cells[d] / 2;
   }
   double sum = 0;

@@ -44,7 +44,11 @@ void read_coupling(Section section, Scene& scene) {
   if (one_load) loads = {"transpose"};
   coupling.load = section.choice("load", loads, classic ? loads.back() : loads.front());
   coupling.tolerance = section.number("tolerance", "-", {0, 1, false}, coupling.tolerance);
-  coupling.max_iterations = static_cast<int>(section.count("max_iterations", 1, std::int64_t{coupling.max_iterations}));
+  constexpr std::int64_t most_iterations = 1'000'000;
+  const std::int64_t iterations = section.count("max_iterations", 1, std::int64_t{coupling.max_iterations});
+  require_at(section.place("max_iterations"), iterations <= most_iterations, "max_iterations = ", iterations,
+             " must be at most ", most_iterations);
+  coupling.max_iterations = static_cast<int>(iterations);
   if (coupling.scheme == "aitken")
     coupling.relaxation = section.number("relaxation", "-", {0, 1, true}, coupling.relaxation);
 }

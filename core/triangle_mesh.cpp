@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "core/point_math.hpp"
+#include "core/whole.hpp"
 
 namespace greenwater {
 namespace {
@@ -48,7 +49,10 @@ class NearPoints {
 
  private:
   // Shifted by a part of a cell, as round coordinates would lie on the borders of cells.
-  std::int64_t cell(coord x) const { return static_cast<std::int64_t>(std::floor(x / width_ + 0.37)); }
+  std::int64_t cell(coord x) const {
+    constexpr std::int64_t most = std::int64_t{1} << 62;
+    return whole_within(std::floor(x / width_ + 0.37), -most, most);
+  }
 
   coord tolerance_, width_;
   std::unordered_map<Cell, std::vector<int>, CellHash> cells_;

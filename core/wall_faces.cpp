@@ -16,7 +16,7 @@ Place cross(const Place& a, const Place& b) {
 
 coord distance_to_segment(const Place& a, const Place& b, const Place& x) {
   const Place along = minus(b, a), from = minus(x, a);
-  const coord s = std::clamp(dot(from, along) / dot(along, along), 0.0, 1.0);
+  const coord length2 = dot(along, along), s = length2 > 0 ? std::clamp(dot(from, along) / length2, 0.0, 1.0) : 0;
   const Place rest = minus(from, {s * along[0], s * along[1], s * along[2]});
   return std::sqrt(dot(rest, rest));
 }
@@ -27,6 +27,7 @@ Place face_normal(const FaceCorners& c, int dim) {
   const Place a = minus(c[1], c[0]);
   Place n = dim == 2 ? Place{-a[1], a[0], 0} : cross(a, minus(c[2], c[0]));
   const coord length = std::sqrt(dot(n, n));
+  if (!(length > 0)) return {};
   for (coord& component : n) component /= length;
   return n;
 }
@@ -46,7 +47,7 @@ std::array<double, 3> shares_at(const WallFace& face, int dim, const Place& plac
 coord distance_to_face(const FaceCorners& c, int dim, const Place& x) {
   if (dim == 2) return distance_to_segment(c[0], c[1], x);
   const Place n = face_normal(c, 3);
-  bool above = true;
+  bool above = n != Place{};
   coord to_edge = distance_to_segment(c[2], c[0], x);
   for (int e = 0; e < 3; ++e) {
     const Place &from = c[e], &to = c[(e + 1) % 3];

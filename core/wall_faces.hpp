@@ -38,7 +38,7 @@ struct WallFaces {
 using FaceCorners = std::array<std::array<coord, 3>, 3>;
 FaceCorners corners_of(const WallFace& face);
 
-/// Unit normal: to the left of the segment, or by the right-hand rule of the triangle.
+/// Unit normal: to the left of the segment, or by the right-hand rule of the triangle. Zero of a face without length or area.
 std::array<coord, 3> face_normal(const FaceCorners& corner, int dim);
 
 /// The shares of the corners at a place of the face's plane; their sum is 1. What is linear along the face is the sum of its

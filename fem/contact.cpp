@@ -61,6 +61,7 @@ Contact::Plane::Plane(const FaceCorners& corner, int corners)
 }
 
 bool Contact::Plane::faced_by(const Vec3& x, double slack) const {
+  if (normal.isZero(0)) return false;  // of no size
   for (int e = 0; e < ends; ++e)
     if (inwards[e].dot(x) < begin[e] - slack) return false;
   return true;

@@ -19,10 +19,10 @@ struct GridShape {
   KOKKOS_INLINE_FUNCTION int count() const { return cells[0] * cells[1] * cells[2]; }
   KOKKOS_INLINE_FUNCTION bool repeats() const { return period[0] > 0 || period[1] > 0 || period[2] > 0; }
 
-  /// Cell index along one axis, kept inside the grid.
+  /// Cell index along one axis, kept inside the grid; 0 of what is not a number.
   KOKKOS_INLINE_FUNCTION int along(int axis, coord x) const {
     const coord k = floor((x - origin[axis]) / cell);
-    return k < 0 ? 0 : k >= cells[axis] ? cells[axis] - 1 : static_cast<int>(k);
+    return k >= cells[axis] ? cells[axis] - 1 : k > 0 ? static_cast<int>(k) : 0;
   }
 
   template <int Dim>

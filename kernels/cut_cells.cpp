@@ -65,7 +65,7 @@ void CutCells::find(const WallFaces& faces, const GridShape& grid) {
   for (const WallFace& face : faces.faces) {
     const FaceCorners& corner = faces_.emplace_back(corners_of(face));
     const Place normal = face_normal(corner, dim);
-    if (!std::isfinite(normal[0])) continue;  // of no size
+    if (normal == Place{}) continue;  // of no size
     for_each_cell(corner, dim, grid, [&](const std::array<int, 3>& cell) {
       Place foot = centre_of(grid, cell, dim), sides[2];
       coord height = 0;

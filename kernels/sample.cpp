@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/check.hpp"
+#include "core/whole.hpp"
 #include "kernels/speed.hpp"
 
 namespace greenwater {
@@ -61,6 +63,8 @@ namespace {
 
 using Place = std::array<coord, 3>;
 
+constexpr int most_patches = 10'000'000;  // of a wall: memory
+
 Place between(const Place& a, const Place& b, coord s) {
   Place x;
   for (int d = 0; d < 3; ++d) x[d] = a[d] + s * (b[d] - a[d]);
@@ -69,25 +73,34 @@ Place between(const Place& a, const Place& b, coord s) {
 
 coord distance(const Place& a, const Place& b) { return std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]); }
 
-int pieces_of(coord whole, coord length) { return std::max(1, static_cast<int>(std::ceil(whole / length - 1e-9))); }
+// Never many more than are allowed.
+int pieces_of(coord whole, coord length) { return whole_within(std::ceil(whole / length - 1e-9), 1, most_patches + 1); }
 
-void cut_segment(const Place& a, const Place& b, coord length, std::vector<WallPatch>& patches) {
+void cut_segment(const Place& a, const Place& b, const Place& normal, coord length, std::vector<WallPatch>& patches) {
   const coord whole = distance(a, b);
-  const Place normal{-(b[1] - a[1]) / whole, (b[0] - a[0]) / whole, 0};
   const int pieces = pieces_of(whole, length);
   for (int k = 0; k < pieces; ++k) patches.push_back({between(a, b, (k + 0.5) / pieces), normal, whole / pieces});
 }
 
+// Of the longest side.
+int pieces_of(const FaceCorners& c, coord length) {
+  return pieces_of(std::max({distance(c[0], c[1]), distance(c[1], c[2]), distance(c[2], c[0])}), length);
+}
+
+// How many patches a face is cut into.
+double places_on(const FaceCorners& c, int dim, coord length) {
+  return dim == 2 ? pieces_of(distance(c[0], c[1]), length) : std::pow(pieces_of(c, length), 2);
+}
+
 // Into n^2 triangles of one shape.
-void cut_triangle(const Place& a, const Place& b, const Place& c, coord length, std::vector<WallPatch>& patches) {
-  Place normal{};
+void cut_triangle(const FaceCorners& corner, const Place& normal, coord length, std::vector<WallPatch>& patches) {
+  const auto& [a, b, c] = corner;
+  coord twice_area = 0;
   for (int d = 0; d < 3; ++d) {
     const int e = (d + 1) % 3, f = (d + 2) % 3;
-    normal[d] = (b[e] - a[e]) * (c[f] - a[f]) - (b[f] - a[f]) * (c[e] - a[e]);
+    twice_area += normal[d] * ((b[e] - a[e]) * (c[f] - a[f]) - (b[f] - a[f]) * (c[e] - a[e]));
   }
-  const coord twice_area = std::hypot(normal[0], normal[1], normal[2]);
-  for (coord& component : normal) component /= twice_area;
-  const int n = pieces_of(std::max({distance(a, b), distance(b, c), distance(c, a)}), length);
+  const int n = pieces_of(corner, length);
   const auto at = [&](coord s, coord t) {
     Place x;
     for (int d = 0; d < 3; ++d) x[d] = a[d] + s / n * (b[d] - a[d]) + t / n * (c[d] - a[d]);
@@ -106,11 +119,16 @@ std::vector<WallPatch> wall_patches(const WallFaces& walls, int body, coord leng
   std::vector<WallPatch> patches;
   for (const WallFace& face : walls.faces) {
     if (face.body != body || face.repeated) continue;
-    const auto& c = face.corner;
+    const FaceCorners corner = corners_of(face);
+    const Place normal = face_normal(corner, walls.dim);
+    if (normal == Place{}) continue;  // nothing pushes on a face without area
+    require<ResourceError>(places_on(corner, walls.dim, length) + patches.size() <= most_patches, "the wall \"",
+                           walls.bodies[body].name, "\" would be read at more than ", most_patches,
+                           " places; take a larger mps.spacing or a smaller wall");
     if (walls.dim == 2)
-      cut_segment(c[0].position, c[1].position, length, patches);
+      cut_segment(corner[0], corner[1], normal, length, patches);
     else
-      cut_triangle(c[0].position, c[1].position, c[2].position, length, patches);
+      cut_triangle(corner, normal, length, patches);
   }
   return patches;
 }

@@ -1,6 +1,7 @@
 // Whole runs: the dam break against the published fronts, and a tank that stays still.
 #include <cmath>
 #include <iostream>
+#include <limits>
 
 #include "core/check.hpp"
 #include "tests/runs.hpp"
@@ -205,6 +206,39 @@ TEST_CASE("wall force and pressure probes in 3-D", "[unit][probes]") {
   CHECK(force[2] == Approx(-1000 * 9.81 * 0.2 * 0.6).epsilon(0.06));
   CHECK(simulation.sample(0) == Approx(1.0));
   CHECK(surface_height(fluid, 0.305, 0.305) == Approx(0.2));
+}
+
+TEST_CASE("nothing pushes on a face without area, and no place is read outside of memory", "[unit][probes]") {
+  for (const int dim : {2, 3}) {
+    WallFaces walls;
+    walls.dim = dim;
+    walls.bodies = {{"wall"}};
+    for (const double size : {0.5, 0.0, 1e-200, 1e-308}) {  // the last ones have squares of 0
+      WallFace face;
+      face.corner[1].position[0] = size;
+      face.corner[2].position[1] = dim == 3 ? 0.5 : 0;
+      walls.faces.push_back(face);
+    }
+    const auto patches = wall_patches(walls, 0, 0.02);
+    double area = 0;
+    for (const WallPatch& patch : patches) {
+      area += patch.area;
+      for (int d = 0; d < 3; ++d) CHECK((std::isfinite(patch.centre[d]) && std::isfinite(patch.normal[d])));
+    }
+    CHECK(area == Approx(dim == 2 ? 0.5 : 0.125));
+    CHECK(face_normal(corners_of(walls.faces[1]), dim) == std::array<coord, 3>{});
+    CHECK(distance_to_face(corners_of(walls.faces[1]), dim, {0, 0, 0.2}) == Approx(0.2));
+    walls.faces = {walls.faces.front()};
+    walls.faces[0].corner[1].position[0] = 1e9;
+    CHECK_THROWS_AS(wall_patches(walls, 0, 0.02), ResourceError);
+  }
+  FluidSimulation simulation(scene_of("dam_break_rigid/quick.toml"));
+  PointSampler sampler;
+  const double none = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
+  const auto p = sampler.pressure(simulation.fluid(),
+                                  {{none, none, 0}, {infinite, -infinite, 0}, {1e308, -1e308, 0}, {0.1, none, 0}},
+                                  Reading::neumann);
+  for (const double value : p) CHECK(value == 0);
 }
 
 TEST_CASE("the wrong number of particles is an error with its place", "[unit][run]") {

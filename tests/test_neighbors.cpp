@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/check.hpp"
+#include "core/whole.hpp"
 #include "tests/shapes.hpp"
 #include "tests/support.hpp"
 
@@ -210,6 +211,39 @@ TEST_CASE("particles outside the domain, or nowhere, leave", "[unit][neighbors]"
   CHECK(p.count == 96);
   const auto id = host(p.id);
   for (int i = 0; i < p.count; ++i) CHECK((id(i) != 7 && id(i) != 20 && id(i) != 50 && id(i) != 99));
+}
+
+TEST_CASE("every place has a cell of the grid, also one that is not a number", "[unit][neighbors]") {
+  const GridShape grid = make_grid(3, {0, 0, 0}, {1, 2, 3}, 0.1);
+  const coord numbers[] = {std::nan(""), -std::nan(""), INFINITY, -INFINITY, 1e308,  -1e308, 1e300, 3e9,
+                           -3e9,         1e-308,        0,        -0.0,      0.9999, 1e19,   -1e19, 2.9999};
+  for (const coord x : numbers) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const int cell = grid.along(axis, x);
+      CHECK(cell >= 0);
+      CHECK(cell < grid.cells[axis]);
+    }
+    for (const coord y : numbers) {
+      const int cell = grid.cell_of(Vec<3, coord>{x, 0.5, y});
+      CHECK(cell >= 0);
+      CHECK(cell < grid.count());
+    }
+  }
+  CHECK(grid.along(0, std::nan("")) == 0);
+  CHECK(grid.along(2, 1e308) == grid.cells[2] - 1);
+  CHECK(grid.along(2, -1e308) == 0);
+}
+
+TEST_CASE("a whole number made of a number is within its bounds", "[unit]") {
+  CHECK(whole_within(std::nan(""), 2, 7) == 2);
+  CHECK(whole_within(INFINITY, 2, 7) == 7);
+  CHECK(whole_within(-INFINITY, 2, 7) == 2);
+  CHECK(whole_within(1e300, 0, 1 << 30) == 1 << 30);
+  CHECK(whole_within(3.9, 2, 7) == 3);
+  CHECK(whole_within(7.5, 2, 7) == 7);
+  CHECK(whole_within(-3.0, -10, 7) == -3);
+  CHECK(whole_within(1e30, std::int64_t{0}, std::numeric_limits<std::int64_t>::max()) ==
+        std::numeric_limits<std::int64_t>::max());
 }
 
 TEST_CASE("a grid too large to number is refused", "[unit][neighbors]") {
