@@ -73,6 +73,7 @@ struct PlateCase : GeometryCase {
   double height = 0, thickness = 0;  // [m]; thickness 0 is allowed
   double width = 0;                  // [m] 3-D only
   double angle = 0;                  // [rad] from the vertical, positive leans downstream (+x)
+  Place thickness_place;
 };
 
 struct MeshCase : GeometryCase {     // 3-D: walls from an STL file

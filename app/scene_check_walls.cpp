@@ -50,6 +50,17 @@ void check_plates_in_boxes(const Check& check) {
   }
 }
 
+/// Pressure is read a thousandth of a spacing off a wall: on the other side of a thinner plate already, so that its force
+/// would count twice. Sides that are nearer to each other than round-off are neither one wall nor two.
+void check_thickness(const Check& check) {
+  constexpr double thinnest = 2e-3;  // x spacing
+  const double least = thinnest * check.scene.mps.spacing;
+  for (const PlateCase& plate : check.scene.plates)
+    require_at(plate.thickness_place, plate.thickness == 0 || plate.thickness >= least, "thickness = ", plate.thickness,
+               " m of the plate \"", plate.name, "\" is none beside mps.spacing = ", check.scene.mps.spacing,
+               " m; take thickness = 0, which is a plate wet on both sides, or at least ", least, " m");
+}
+
 // A plate without thickness gets a little, for the sake of the test, and touching is no overlap.
 constexpr double thin = 4e-3, touch = 2e-3;  // x spacing
 
@@ -201,6 +212,7 @@ void check_crossings_3d(const Check& check) {
 
 void check_walls(const Scene& scene) {
   const Check check{scene};
+  check_thickness(check);
   check_plates_in_boxes(check);
   check_plates_apart(check);
   scene.dimension == 2 ? check_crossings_2d(check) : check_crossings_3d(check);

@@ -84,6 +84,7 @@ PlateCase read_plate(Section& section, int dimension, bool with_width) {
   plate.base_side = section.choice("base_side", {"upstream", "centre", "downstream"}, std::string("centre"));
   plate.height = section.number("height", "m", positive, example(0.1));
   plate.thickness = section.number("thickness", "m", at_least(0), 0.0);
+  plate.thickness_place = section.place("thickness");
   if (with_width) plate.width = section.number("width", "m", positive, example(0.2));
   plate.angle = section.number("angle", "rad", between(-flat, flat), 0.0);
   return plate;

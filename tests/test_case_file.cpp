@@ -387,6 +387,18 @@ TEST_CASE("slips in TOML get a hint", "[unit][case]") {
   CHECK(contains(complaint_about(with("[mps]", "[mps]\nspacing")), "key = value"));
 }
 
+TEST_CASE("a plate so thin that its sides cannot be told from each other is refused", "[unit][case]") {
+  for (const std::string thickness : {"1e-308", "1e-17", "1e-12", "3.9e-5"}) {
+    const std::string text = complaint_about(with("height = 0.05", "height = 0.05\nthickness = " + thickness));
+    INFO(thickness << " -> " << text);
+    CHECK(contains(text, "case.toml:15:13"));
+    CHECK(contains(text, "is none beside mps.spacing"));
+    CHECK(contains(text, "take thickness = 0"));
+  }
+  CHECK(complaint_about(with("height = 0.05", "height = 0.05\nthickness = 0")).empty());
+  CHECK(complaint_about(with("height = 0.05", "height = 0.05\nthickness = 4.1e-5")).empty());
+}
+
 TEST_CASE("a case that makes no sense is refused", "[unit][case]") {
   const std::vector<std::array<std::string, 3>> slips{
       {"format = 1", "format = 2", "reads format 1"},
