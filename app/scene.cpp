@@ -50,6 +50,15 @@ void read_water(Section& root, Scene& scene) {
   if (auto effects = root.table_if_present("effects")) read_effects(*effects, scene);
 }
 
+/// fluid = [] is as much as no fluid; a case has one, or a structure.
+void require_content(Section& root) {
+  if (root.offers_some("fluid") || root.offers_some("structure")) return;
+  for (const char* key : {"fluid", "structure"})
+    require_at(root.place(key), !root.has(key), key,
+               " = [] is empty, and there is nothing else to be computed; delete it "
+               "and add [[fluid]] with its region, or [[structure]] with its shape and material");
+}
+
 /// Of a run without fluid: the step in which structures take their substeps.
 void read_step_alone(Section& root, Scene& scene) {
   constexpr double usual_steps = 1000;
@@ -118,7 +127,8 @@ Scene read_scene(CaseFile& file) {
   read_time(root.table("time"), scene);
   read_domain(root, scene);
   read_geometry(root, scene);
-  scene.has_fluid = root.offers("fluid") || !root.offers("structure");
+  require_content(root);
+  scene.has_fluid = root.offers_some("fluid") || !root.offers_some("structure");
   scene.has_fluid ? read_water(root, scene) : read_step_alone(root, scene);
   read_structures(root, scene);
   if (scene.has_fluid) read_undo(root.table("mps").table("undo"), scene);

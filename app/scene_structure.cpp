@@ -203,6 +203,8 @@ std::optional<ContactCase> read_contact(Section& section, const Scene& scene) {
   ContactCase contact;
   contact.place = table->place();
   contact.walls = table->choices("walls", geometries, example(geometries));
+  require_at(table->place("walls"), !contact.walls.empty(),
+             "walls = [] names nothing to touch; name a geometry, or delete the table ", table->header());
   contact.stiffness = table->number("stiffness", "-", {0, 1, false}, contact.stiffness);
   return contact;
 }

@@ -203,6 +203,11 @@ bool Section::offers(const std::string& key) {
   return has(key);
 }
 
+bool Section::offers_some(const std::string& key) {
+  const CaseNode* node = ask(key);
+  return node != nullptr && (node->kind != CaseNode::Kind::list || !node->children.empty());
+}
+
 Place Section::place() const { return place_of(*table_); }
 
 Place Section::place(const std::string& key) const {

@@ -86,6 +86,8 @@ class Section {
   bool has(const std::string& key) const;
   /// As has(), for a key that may be left out: it counts as known where others are misspelt.
   bool offers(const std::string& key);
+  /// As offers(), but an empty list counts as nothing.
+  bool offers_some(const std::string& key);
   std::string header() const { return table_->header(); }
   Place place() const;                        ///< of the table
   Place place(const std::string& key) const;  ///< of the key's value; of the table when the key is absent

@@ -387,6 +387,39 @@ TEST_CASE("slips in TOML get a hint", "[unit][case]") {
   CHECK(contains(complaint_about(with("[mps]", "[mps]\nspacing")), "key = value"));
 }
 
+TEST_CASE("an empty list is as much as none, and refused where something is needed", "[unit][case]") {
+  const std::string fluid = "[[fluid]]\nregion = { type = \"box\", min = [0.0, 0.0], max = [0.1, 0.2] }\n";
+  const std::string small = small_case(), rest = small.substr(0, small.find("[[probe]]"));
+  const auto head = [](const std::string& text, const std::string& line) { return line + '\n' + text; };
+  CHECK(complaint_about(head(rest, "structure = []")).empty());
+  CHECK(complaint_about(head(rest, "probe = []")).empty());
+  CHECK(complaint_about(head(rest, "structure = []\nprobe = []")).empty());
+  CHECK(contains(complaint_about(head(rest, "geometry = []")), "geometry"));
+  std::string dry = rest;
+  dry.erase(dry.find("[[fluid]]"), fluid.size());
+  for (const std::string line :
+       {"structure = []", "structure = [] # none", "fluid = []", "fluid = []\nstructure = []"}) {
+    for (const std::string probe :
+         {"", "[[probe]]\nname = \"p\"\nkind = \"structure_displacement\"\n", "[[probe]]\nname = \"p\"\n"}) {
+      const std::string text = complaint_about(head(dry, line) + probe);
+      INFO(line << " -> " << text);
+      CHECK(contains(text, line.substr(0, line.find(' ')) + " = [] is empty"));
+      CHECK(contains(text, "case.toml:1:"));
+      CHECK(contains(text, "add [[fluid]]"));
+    }
+  }
+  CHECK(contains(complaint_about(dry), "missing table [[fluid]]"));
+  // A probe of what is not there is refused as where the list is missing.
+  const std::string probe = "[[probe]]\nname = \"p\"\nkind = \"structure_displacement\"\n";
+  CHECK(contains(complaint_about(head(rest, "structure = []") + probe), "kind cannot be"));
+  // An empty list of fluids beside a structure is a structure alone.
+  const std::string plate =
+      "fluid = []\nformat = 1\n[case]\nname = \"a\"\n[time]\nend = 0.01\n[[structure]]\nbase = [0.0, 0.0]\nheight = "
+      "0.1\nthickness = 0.01\nyoung = 1e7\ndensity = 1000\npoisson = 0.3\n[structure.fem]\ndivisions = [1, 4]\n";
+  CHECK(complaint_about(plate).empty());
+  CHECK_FALSE(scene_of_text(plate).has_fluid);
+}
+
 TEST_CASE("a plate so thin that its sides cannot be told from each other is refused", "[unit][case]") {
   for (const std::string thickness : {"1e-308", "1e-17", "1e-12", "3.9e-5"}) {
     const std::string text = complaint_about(with("height = 0.05", "height = 0.05\nthickness = " + thickness));
