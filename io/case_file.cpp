@@ -6,6 +6,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "io/nesting.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -24,10 +26,16 @@ std::string read_whole(const std::filesystem::path& path) {
   return text.str();
 }
 
+constexpr std::size_t longest_quote = 60;  // characters of an option that makes no sense
+
 std::vector<std::string> parts_of(const CaseOption& option) {
   std::vector<std::string> parts;
   std::istringstream stream(option.key);
   for (std::string part; std::getline(stream, part, '.');) parts.push_back(part);
+  require(parts.size() <= static_cast<std::size_t>(most_levels), option.shown.substr(0, longest_quote),
+          ": error: a path of ", parts.size(),
+          " keys, and no case has more than a few; write for example --set "
+          "mps.spacing=0.002");
   bool whole = !parts.empty() && option.key.back() != '.';
   for (const std::string& part : parts) whole = whole && !part.empty();
   require(whole, option.shown, ": error: not a dotted path of keys; write for example --set mps.spacing=0.002");

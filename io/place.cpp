@@ -28,7 +28,7 @@ std::string quote(const Place& place) {
   std::ostringstream text;
   text << '\n' << std::setw(5) << place.line << " | " << line.substr(0, widest_quote);
   if (place.column > 0 && static_cast<std::size_t>(place.column) <= widest_quote) {
-    const int room = std::max(1, static_cast<int>(line.size()) - place.column + 1);
+    const int room = std::max(1, static_cast<int>(std::min(line.size(), widest_quote)) - place.column + 1);
     text << "\n      | " << blanks_before(line, place.column)
          << std::string(static_cast<std::size_t>(std::clamp(place.length, 1, room)), '^');
   }

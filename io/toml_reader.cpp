@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "io/case_node.hpp"
+#include "io/nesting.hpp"
 
 namespace greenwater {
 namespace {
@@ -36,12 +37,21 @@ Text split(const std::string& text, const std::string& file) {
   return {file, std::move(lines)};
 }
 
-CaseNode convert(const toml::node& source, const Text& text);
+[[noreturn]] void refuse_depth(const Place& place) {
+  refuse(place, "names, lists or tables lie in each other more than ", most_levels,
+         " deep here, and no case needs more than a few; mend the dots or the brackets");
+}
 
-void convert_table(const toml::table& table, const Text& text, CaseNode& node) {
+void require_shallow(const std::string& text, const Text& places) {
+  check_nesting(text, [&](const TooDeep& at) { refuse_depth({places.file, at.line, at.column, 1, places.lines}); });
+}
+
+CaseNode convert(const toml::node& source, const Text& text, int level = 0);
+
+void convert_table(const toml::table& table, const Text& text, int level, CaseNode& node) {
   node.kind = CaseNode::Kind::table;
   for (const auto& [key, value] : table) {
-    CaseNode child = convert(value, text);
+    CaseNode child = convert(value, text, level + 1);
     child.key = std::string(key.str());
     child.key_place = text.at(key.source());
     node.children.push_back(std::move(child));
@@ -51,14 +61,15 @@ void convert_table(const toml::table& table, const Text& text, CaseNode& node) {
   });
 }
 
-CaseNode convert(const toml::node& source, const Text& text) {
+CaseNode convert(const toml::node& source, const Text& text, int level) {
   CaseNode node;
   node.place = text.at(source.source());
+  if (level > most_levels) refuse_depth(node.place);
   if (const auto* table = source.as_table()) {
-    convert_table(*table, text, node);
+    convert_table(*table, text, level, node);
   } else if (const auto* list = source.as_array()) {
     node.kind = CaseNode::Kind::list;
-    for (const auto& item : *list) node.children.push_back(convert(item, text));
+    for (const auto& item : *list) node.children.push_back(convert(item, text, level + 1));
   } else if (const auto* words = source.as_string()) {
     node.kind = CaseNode::Kind::text;
     node.text = words->get();
@@ -149,14 +160,17 @@ CaseNode plain_value(const std::string& value) {
 
 CaseNode parse_toml(const std::string& text, const std::string& file_name) {
   const Text places = split(text, file_name);
+  require_shallow(text, places);
   return convert(parsed(text, places), places);
 }
 
 CaseNode parse_option_value(const std::string& value, const std::string& option) {
   CaseNode node;
+  const Text places{option, nullptr};
+  check_nesting(value, [&](const TooDeep&) { refuse_depth({option, 0, 0, 1, nullptr}); });
   try {
     const toml::table table = toml::parse("value = " + value + "\n");
-    node = table.size() == 1 ? convert(*table.get("value"), Text{}) : plain_value(value);
+    node = table.size() == 1 ? convert(*table.get("value"), places) : plain_value(value);
   } catch (const toml::parse_error&) {
     node = plain_value(value);
   }

@@ -387,6 +387,65 @@ TEST_CASE("slips in TOML get a hint", "[unit][case]") {
   CHECK(contains(complaint_about(with("[mps]", "[mps]\nspacing")), "key = value"));
 }
 
+TEST_CASE("names, lists and tables that lie too deep in each other are refused with their place", "[unit][case]") {
+  const auto chain = [](int names, const std::string& name) {
+    std::string text = name;
+    for (int k = 1; k < names; ++k) text += "." + name;
+    return text;
+  };
+  const auto times = [](int count, const std::string& part) {
+    std::string text;
+    for (int k = 0; k < count; ++k) text += part;
+    return text;
+  };
+  for (const int deep : {33, 10000, 100000}) {
+    for (const std::string& line :
+         {'[' + chain(deep, "a") + ']', "[[" + chain(deep, "a") + "]]", chain(deep, "a") + " = 1",
+          '[' + chain(deep, "\"a.b\"") + ']', chain(deep, "a .  'b'") + " = 1",
+          "x = " + times(deep, "[") + times(deep, "]"), "x = " + times(deep, "{a=") + "1" + times(deep, "}"),
+          "x = " + times(deep, "["), "x = {" + chain(deep, "a") + "=1}"}) {
+      const std::string text = complaint_about(small_case() + line + '\n');
+      INFO(line.substr(0, 60) << " -> " << text.substr(0, 200));
+      CHECK(contains(text, "more than 32 deep"));
+      CHECK(contains(text, "case.toml:31:"));
+      CHECK(text.size() < 1000);
+    }
+  }
+  // A few short ones in each other are as deep.
+  const std::string mixed = complaint_about("[" + chain(20, "a") + "]\n" + chain(20, "b") + " = {" + chain(20, "c") +
+                                            " = [[" + "{d.e = 1}]]}\n");
+  CHECK(contains(mixed, "more than 32 deep"));
+  CHECK(contains(mixed, "case.toml:"));
+  CHECK_FALSE(contains(complaint_about('[' + chain(31, "a") + "]\n"), "deep"));
+  // Neither texts nor comments nor numbers have a depth.
+  const std::string dots = times(100, ".") + times(100, "[") + times(100, "{") + times(100, "a.");
+  for (const std::string& line : {"# " + dots, "title = \"\\\"" + dots + "\"", "title = '" + dots + '\'',
+                                  "title = \"\"\"\n" + dots + "\n\\\"\"\"\"", "title = '''\n" + dots + "'''"}) {
+    const std::string text = with("name = \"small\"", "name = \"small\"\n" + line);
+    INFO(line);
+    CHECK(complaint_about(text).empty());
+  }
+}
+
+TEST_CASE("options lie no deeper than a case, but texts may hold any dots", "[unit][case]") {
+  std::string key = "a";
+  for (int k = 0; k < 10000; ++k) key += ".a";
+  const auto complaint = [](const std::string& argument) -> std::string {
+    try {
+      scene_of_text(small_case(), {set_option(argument)});
+    } catch (const CaseError& error) {
+      return error.what();
+    }
+    return {};
+  };
+  CHECK(contains(complaint(key + "=1"), "a path of 10001 keys"));
+  CHECK(contains(complaint("case.title={" + key + "=1}"), "more than 32 deep"));
+  CHECK(contains(complaint("case.title=" + std::string(10000, '[')), "more than 32 deep"));
+  std::string up;
+  for (int k = 0; k < 50; ++k) up += "../";
+  CHECK(complaint("case.title=" + up + "a.csv").empty());
+}
+
 TEST_CASE("an empty list is as much as none, and refused where something is needed", "[unit][case]") {
   const std::string fluid = "[[fluid]]\nregion = { type = \"box\", min = [0.0, 0.0], max = [0.1, 0.2] }\n";
   const std::string small = small_case(), rest = small.substr(0, small.find("[[probe]]"));
