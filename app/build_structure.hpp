@@ -18,6 +18,8 @@ auto built_at(const Place& place, Build build) {
     return build();
   } catch (const CaseError& error) {
     refuse(place, error.what());
+  } catch (const NumericsError& error) {  // before the first step it is the case that is wrong
+    refuse(place, error.what());
   }
 }
 

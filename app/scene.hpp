@@ -209,7 +209,7 @@ struct StructureCase {
   std::string plane = "strain";                // strain | stress; of a mesh of quadrilaterals
   double depth = 1;                            // of such a mesh [m]
   double time_step = 0;                        // h at most [s]; 0: safety x critical
-  Place time_step_place;
+  Place time_step_place, material_place;
   double safety = 0.9;                   // of the critical step
   double damping = 0;                    // alpha [1/s]
   std::optional<double> damping_ratio;   // instead: of the critical ...

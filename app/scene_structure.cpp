@@ -72,6 +72,7 @@ void read_material(Section& section, StructureCase& structure) {
   constexpr double incompressible = 0.5;
   structure.material = section.text("material", std::string());
   structure.young = section.number("young", "Pa", positive, example(3.43e9));
+  structure.material_place = section.place("young");
   structure.density = section.number("density", "kg/m^3", positive, example(1200.0));
   structure.poisson = section.number("poisson", "-", any_number, example(0.37));
   require_at(section.place("poisson"), structure.poisson > -1 && structure.poisson < incompressible,

@@ -91,7 +91,7 @@ Structure::Structure(const Scene& scene, const StructureCase& given, double step
 
 void Structure::choose_substeps(double step, int least) {
   constexpr double most_substeps = 1e9;
-  critical_ = critical_step(*solid_, supports_);
+  critical_ = built_at(given_.material_place, [&] { return critical_step(*solid_, supports_); });
   if (given_.contact) critical_ = Contact::critical_step(critical_, given_.contact->stiffness);
   require_at(given_.time_step_place, given_.time_step < critical_, "time_step = ", given_.time_step,
              " s is not below the critical step of \"", given_.name, "\", ", critical_,
@@ -107,9 +107,12 @@ void Structure::choose_substeps(double step, int least) {
 void Structure::choose_damping() {
   damping_ = given_.damping;
   if (!given_.damping_ratio) return;
-  const double frequency =
-      given_.damping_frequency > 0 ? given_.damping_frequency : lowest_modes(*solid_, supports_, 1).frequencies[0];
+  const double frequency = given_.damping_frequency > 0 ? given_.damping_frequency : modes(1).frequencies[0];
   damping_ = damping_of(*given_.damping_ratio, frequency);
+}
+
+Modes Structure::modes(int count) const {
+  return built_at(given_.material_place, [&] { return lowest_modes(*solid_, supports_, count); });
 }
 
 double Structure::stress_at(const Point& place, const std::string& component) const {
@@ -173,7 +176,7 @@ std::vector<std::string> Structure::frequency_lines() const {
   if (solid_->unknowns() > most_unknowns)
     return {fmt::format("          frequencies are not looked for with more than {} unknowns", most_unknowns)};
   std::vector<std::string> lines;
-  const Modes modes = lowest_modes(*solid_, supports_, shown);
+  const Modes modes = this->modes(shown);
   for (Eigen::Index i = 0; i < modes.frequencies.size(); ++i) {
     const double f = modes.frequencies[i], ratio = damping_ / (4 * std::numbers::pi * f);
     if (f > 0)

@@ -35,6 +35,7 @@ class Structure {
  private:
   void choose_substeps(double step, int least);
   void choose_damping();
+  Modes modes(int count) const;
   std::vector<std::string> frequency_lines() const;
   double stress_at(const Point& place, const std::string& component) const;
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "core/check.hpp"
+
 namespace greenwater {
 namespace {
 
@@ -72,6 +74,10 @@ double highest_frequency(const Solid& solid, const Supports& supports, const Eig
     next -= diagonal[step] * q;
     if (step > 0) next -= beside[step - 1] * last;
     beside[step] = next.norm();
+    require<NumericsError>(std::isfinite(diagonal[step]) && std::isfinite(beside[step]),
+                           "the stiffness of the structure over its mass is more than numbers can hold (young = ",
+                           solid.material().young, " Pa, density = ", solid.material().density,
+                           " kg/m^3): take values of a real material, and look at the unit of its sizes");
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
     ritz.computeFromTridiagonal(diagonal.head(step + 1), beside.head(step));
     const double residual = beside[step] * std::abs(ritz.eigenvectors()(step, step));

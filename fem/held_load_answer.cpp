@@ -21,6 +21,9 @@ Eigen::MatrixXd held_load_answer(const Solid& solid, const Supports& supports, c
     march.advance(steps, p.col(j));
     answer.col(j) = p.transpose() * march.displacement();
   }
+  require<NumericsError>(answer.allFinite(),
+                         "what the structure answers to a load is not a finite number: look at its ",
+                         "material, and at the unit of its sizes");
   return (answer + answer.transpose()) / 2;  // of round-off only
 }
 

@@ -24,6 +24,9 @@ class Operator {
     // A body that is not held has modes of frequency 0, so K alone need not have an inverse.
     Eigen::SparseMatrix<double> k = part_of(solid.tangent(u), free);
     shift_ = 1e-9 * k.diagonal().sum() / root_.squaredNorm();
+    require<NumericsError>(std::isfinite(shift_),
+                           "the stiffness of the structure over its mass is not a finite number: ",
+                           "take values of a real material, and look at the unit of its sizes");
     for (Eigen::Index i = 0; i < k.cols(); ++i) k.coeffRef(i, i) += shift_ * root_[i] * root_[i];
     factor_.compute(k);
     require<NumericsError>(factor_.info() == Eigen::Success, "the stiffness of the structure cannot be factorised");
@@ -78,6 +81,9 @@ struct Pairs {
 /// The best pairs within the span of `basis`, of which `pushed` is the operator's answer.
 Pairs best_pairs(const Eigen::MatrixXd& basis, const Eigen::MatrixXd& pushed, int count) {
   const Eigen::MatrixXd small = basis.transpose() * pushed;
+  require<NumericsError>(small.allFinite(),
+                         "the natural frequencies of the structure are not finite numbers: look at its ",
+                         "material, and at the unit of its sizes");
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solved((small + small.transpose()) / 2);
   const Eigen::VectorXd& theta = solved.eigenvalues();
   std::vector<int> order(theta.size());

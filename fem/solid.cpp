@@ -77,6 +77,11 @@ Solid::Solid(SolidMesh mesh, const Material& material, const SolidOptions& optio
     add_mass<2>(mesh_, material_.density, options_.thickness, mass_);
   else
     add_mass<3>(mesh_, material_.density, 1, mass_);
+  require(mass_.allFinite() && mass_.minCoeff() > 0, "the masses of the structure's nodes reach from ",
+          mass_.minCoeff(), " to ", mass_.maxCoeff(), " kg with density = ", material_.density,
+          " kg/m^3, which is none or more than numbers can hold: take values of a real material, and look at the unit "
+          "of its "
+          "sizes");
   const bool plane_stress = dim() == 2 && options_.plane == Plane::stress;
   const element::Rules rules{plane_stress ? lame_plane_stress(material_) : lame(material_), material_.law,
                              options_.element, options_.plane};

@@ -1,8 +1,12 @@
 // Structures from case files: what is understood, what is refused, and runs against published figures.
 
 #include <cmath>
+#include <limits>
 
 #include "app/structure_simulation.hpp"
+#include "core/check.hpp"
+#include "fem/critical_step.hpp"
+#include "fem/modes.hpp"
 #include "tests/catch.hpp"
 #include "tests/program.hpp"
 #include "tests/structure_text.hpp"
@@ -229,6 +233,41 @@ TEST_CASE("structures that cannot be are refused, with place and cure", "[unit][
   check(small_plate("", "[[structure.support]]\nmin = [5.0, 5.0]\nmax = [6.0, 6.0]\n"), {"no node"});
   check(small_plate("", "[[structure.load]]\npart = \"left\"\nkind = \"pressure\"\npressure = \"y\"\nfollows = true\n"),
         {"one number"});
+}
+
+TEST_CASE("materials and sizes beyond what numbers hold are refused, with place and cure", "[unit][structure][bad]") {
+  const std::string good = small_plate();
+  const auto check = [&](const std::string& text, const std::string& word) {
+    const std::string complaint = complaint_about(text);
+    INFO(complaint);
+    CHECK(contains(complaint, "case.toml:"));
+    CHECK(contains(complaint, word));
+    CHECK(contains(complaint, "a real material"));
+  };
+  for (const char* young : {"1e308", "1e200", "1.7e308"})
+    for (const char* kinematics : {"small", "corotational", "total_lagrangian"})
+      check(replaced(small_plate(text_of("kinematics = \"", kinematics, "\"\n")), "3.43e9", young), "over its mass");
+  check(replaced(good, "1200.0", "1e-308"), "young = 3.43e+09 Pa, density = 1e-308");
+  check(replaced(good, "1200.0", "1e-320"), "density = ");
+}
+
+TEST_CASE("what is not a finite number comes to no eigenvalue solver", "[unit][structure]") {
+  const SolidMesh mesh = box_mesh(3, {0, 0, 0}, {0.01, 0.1, 0.1}, {1, 4, 4});
+  Supports supports;
+  clamp(supports, 3, find_part(mesh, "bottom")->nodes);
+  for (const double young : {1e308, 1e250, std::numeric_limits<double>::infinity()}) {
+    INFO(young);
+    const Solid solid(mesh, {young, 0.3, 1000});
+    CHECK_THROWS_AS(critical_step(solid, supports), NumericsError);
+    if (young > 1e300) CHECK_THROWS_AS(lowest_modes(solid, supports, 3), NumericsError);
+  }
+  const Solid soft(mesh, {1e6, 0.3, 1000});
+  Eigen::VectorXd torn = Eigen::VectorXd::Zero(soft.unknowns());
+  torn[7] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(highest_frequency(soft, supports, torn), NumericsError);
+  CHECK_THROWS_AS(lowest_modes(soft, supports, 3, torn), NumericsError);
+  CHECK_THROWS_AS(Solid(mesh, {1e6, 0.3, 1e-322}), CaseError);
+  CHECK_THROWS_AS(Solid(mesh, {1e6, 0.3, std::numeric_limits<double>::infinity()}), CaseError);
 }
 
 TEST_CASE("a structure that nothing holds may run, but is told of", "[unit][structure][bad]") {
