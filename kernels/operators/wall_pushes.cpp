@@ -79,7 +79,7 @@ struct Pusher {
   // Calls f(group) for every panel that particle i pushes, and separately for what pulls.
   template <class F>
   KOKKOS_INLINE_FUNCTION void for_each_group(int i, F f) const {
-    Group<Dim> group[capacity];
+    Group<Dim> group[capacity]{};
     int number = 0;
     const Panel* first = near.panels.data();
     for_each(i, [&](const Panel& wall, const Vec<Dim, coord>& place, const Vec<Dim, coord>& into, coord area) {
