@@ -25,7 +25,7 @@ void fill(Exchange<CoordField>& field, const Eigen::VectorXd& values, int dim) {
 }  // namespace
 
 Coupler::Coupled::Coupled(ElasticBody given, const WallFaces& walls, int first)
-    : body(std::move(given)), first_unknown(first) {
+    : body(std::move(given)), name(walls.bodies[walls.faces[body.first_face].body].name), first_unknown(first) {
   const int dim = walls.dim, corners = body.surface.corners();
   velocity = Exchange<CoordField>("greenwater::corner_velocity", corners, dim);
   acceleration = Exchange<CoordField>("greenwater::corner_acceleration", corners, dim);
@@ -58,7 +58,11 @@ void Coupler::march(Coupled& one, const Eigen::VectorXd& load, double dt) {
   const Eigen::VectorXd force = one.body.surface.on_nodes(load);
   one.body.march->set_state(one.start);
   if (options_.way == CouplingWay::staggered) one.body.march->set_held(force);
-  one.body.march->advance(substeps(one.body, dt), force);
+  try {
+    one.body.march->advance(substeps(one.body, dt), force);
+  } catch (const NumericsError& error) {
+    throw NumericsError(text_of("\"", one.name, "\": ", error.what(), " -> ", cure_of_divergence()));
+  }
   one.speed = (one.body.surface.at_corners(one.body.march->displacement()) - one.placed) / dt;
 }
 
@@ -255,16 +259,19 @@ bool Coupler::answer_of_whole_step(Fluid& fluid, double dt) {
   return again;
 }
 
+const char* Coupler::cure_of_divergence() const {
+  return options_.way == CouplingWay::staggered ? "coupling.scheme = \"default\" or \"aitken\""
+                                                : "a shorter mps.time_step";
+}
+
 /// What has diverged ends here, before walls are made of it.
 void Coupler::check_ways(const Fluid& fluid, double dt) const {
   constexpr double far = 100;  // x spacing
-  const char* cure = options_.way == CouplingWay::staggered ? "coupling.scheme = \"default\" or \"aitken\""
-                                                            : "a shorter mps.time_step";
   for (const Coupled& one : bodies_) {
     const double way = dt * one.speed.lpNorm<Eigen::Infinity>();
     require<NumericsError>(way <= far * fluid.spacing, "t = ", fluid.time, " s: \"",
                            fluid.faces.bodies[one.motion.body].name, "\" moves ", way,
-                           " m in one step of the fluid: it does not march soundly with it -> ", cure);
+                           " m in one step of the fluid: it does not march soundly with it -> ", cure_of_divergence());
   }
 }
 

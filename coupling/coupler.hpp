@@ -99,6 +99,7 @@ class Coupler {
     Coupled(ElasticBody given, const WallFaces& walls, int first);
 
     ElasticBody body;
+    std::string name;  // of the structure
     int first_unknown = 0;
     StructureAnswer answer;  // C
     WallQuadrature quadrature;
@@ -114,6 +115,7 @@ class Coupler {
   void march(Coupled& one, const Eigen::VectorXd& load, double dt);
   Eigen::VectorXd acceleration_of(const Coupled& one, double dt) const;
   void give_speeds(Fluid& fluid, Coupled& one, double dt);
+  const char* cure_of_divergence() const;
   void check_ways(const Fluid& fluid, double dt) const;
   void read_loads(const Fluid& fluid, const PressureSystem* system);
   void renew_answers(double dt);

@@ -135,7 +135,7 @@ TEST_CASE("a staggered march that diverges ends with its name and the cure", "[s
   } catch (const NumericsError& error) {
     told = error.what();
   }
-  CHECK_THAT(told, Catch::Contains("\"plate\" moves") && Catch::Contains("\"aitken\""));
+  CHECK_THAT(told, Catch::Contains("\"plate\"") && Catch::Contains("\"aitken\""));
 }
 
 TEST_CASE("Poli-150 as an elastic plate is Poli-150 as a wall", "[validation][coupling][full]") {
