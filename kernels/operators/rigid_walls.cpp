@@ -26,14 +26,7 @@ std::vector<int> faces_of(const WallFaces& walls, int body) {
   return found;
 }
 
-/// Of a field that is linear along a face: of which it has the values at the corners.
-Triple along_face(const WallFace& face, int dim, const Triple& x, Triple WallPoint::*values) {
-  const auto shares = shares_at(face, dim, x);
-  Triple v{};
-  for (int e = 0; e < dim; ++e) v = sum(v, scaled(face.corner[e].*values, shares[e]));
-  return v;
-}
-
+/// Of a field that is linear along a face, from its values at the corners.
 Triple mixed(const WallFace& face, int dim, const Triple& shares, Triple WallPoint::*values) {
   Triple v{};
   for (int e = 0; e < dim; ++e) v = sum(v, scaled(face.corner[e].*values, shares[e]));
@@ -111,8 +104,9 @@ void RigidWalls::join(const Fluid& fluid, const Survey& survey, const ScalarFiel
     for (std::size_t k = 0; k < watched_.size(); ++k)
       if (watched_[k] == body) add_rows(fluid, pushes, quadrature, static_cast<int>(k));
     if (!sweeps) continue;
-    swept_.gather(pushes, quadrature, [&](int face, const Triple& x) {
-      return along_face(fluid.faces.faces[face], dim, x, &WallPoint::velocity);
+    swept_.gather(pushes, quadrature, [&](int f, const Triple& x) {
+      const WallFace& face = fluid.faces.faces[f];
+      return mixed(face, dim, shares_at(face, dim, x), &WallPoint::velocity);
     });
   }
   swept_.add_to(rhs, survey.fixed, source_per_volume(fluid, dt));
