@@ -84,7 +84,7 @@ class Default : public Scheme {
       report = solve_again(fluid);
       report.iterations += before;
     }
-    if (coupler.weighs()) coupler.weigh(fluid, pressure_, *solver_);
+    if (coupler.weighs()) coupler.weigh(fluid, pressure_, *solver_, dt);
     return report;
   }
 

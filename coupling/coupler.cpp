@@ -30,7 +30,8 @@ Coupler::Coupled::Coupled(ElasticBody given, const WallFaces& walls, int first)
   velocity = Exchange<CoordField>("greenwater::corner_velocity", corners, dim);
   acceleration = Exchange<CoordField>("greenwater::corner_acceleration", corners, dim);
   placed = body.surface.at_corners(body.march->displacement());
-  base = speed = before = load = applied = Eigen::VectorXd::Zero(dim * corners);
+  base = speed = load = applied = pressed = Eigen::VectorXd::Zero(dim * corners);
+  before = body.surface.at_corners(body.march->velocity());
   const auto& faces = body.surface.corner_of_face();
   Exchange<IndexField> corner_of_face("greenwater::corner_of_face", dim * faces.size());
   for (std::size_t f = 0; f < faces.size(); ++f)
@@ -90,8 +91,6 @@ void Coupler::foresee(Fluid& fluid, double dt) {
     march(one, one.load, dt);
     one.foreseen = one.body.march->state();
     one.base = one.speed;
-    // What it would be without load, as the answer tells it: what the answer is wrong by is then that of the load's change.
-    if (options_.way == CouplingWay::joint) one.base -= one.answer.matrix() * one.load;
     give_speeds(fluid, one, dt);
   }
 }
@@ -104,8 +103,13 @@ void Coupler::join(const Fluid& fluid, const Survey& survey, PressureSystem& sys
   hand_over_answers(fluid, dt);
   system.set_added(&term_);
   Eigen::VectorXd change(unknowns_);
-  for (const Coupled& one : bodies_)
-    change.segment(one.first_unknown, one.base.size()) = one.base + one.answer.matrix() * one.known - one.speed;
+  for (Coupled& one : bodies_) {
+    // What the speeds would be without pressure, as the answer tells it: what the answer is wrong by is then that of the
+    // load's change.
+    const Eigen::VectorXd other = one.known + one.layer * one.before - one.load;
+    one.base = one.answer.with_layer(one.speed + one.answer.matrix() * other);
+    change.segment(one.first_unknown, one.base.size()) = one.base - one.speed;
+  }
   change_source(fluid, system, change, dt);
 }
 
@@ -123,6 +127,11 @@ void Coupler::look_at_walls(const Fluid& fluid, const Survey& survey, PressureSy
     one.quadrature.weigh(pushes);
     add_wall_rows(pushes, one.quadrature, one.body.surface, dim, one.body.first_face, one.first_unknown, rows);
     one.known = known_load(pushes, one.quadrature, one.body.surface, dim, one.body.first_face, fluid.rho);
+    one.layer = layer_mass(pushes, one.quadrature, one.body.surface, dim, one.body.first_face, fluid.rho) / dt;
+    if (options_.way == CouplingWay::joint) {
+      answers_changed_ |= one.answer.take_layer(one.layer);
+      one.layer = one.answer.layer();
+    }
     swept_.gather(pushes, one.quadrature, [&](int face, const Triple& x) {
       const auto shares = shares_at(fluid.faces.faces[face], dim, x);
       const auto& corners = one.body.surface.corner_of_face()[face - one.body.first_face];
@@ -148,11 +157,12 @@ void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
   const double scale = -source_per_volume(fluid, dt);
   std::vector<real> C(static_cast<std::size_t>(unknowns_) * unknowns_, 0), leading;
   for (const Coupled& one : bodies_) {
-    for (Eigen::Index row = 0; row < one.answer.matrix().rows(); ++row)
-      put(one.answer.matrix().row(row), scale, &C[(one.first_unknown + row) * unknowns_ + one.first_unknown]);
-    for (Eigen::Index k = 0; k < one.answer.leading().rows(); ++k) {
+    const Eigen::MatrixXd &matrix = one.answer.matrix_with_layer(), &rows = one.answer.leading_with_layer();
+    for (Eigen::Index row = 0; row < matrix.rows(); ++row)
+      put(matrix.row(row), scale, &C[(one.first_unknown + row) * unknowns_ + one.first_unknown]);
+    for (Eigen::Index k = 0; k < rows.rows(); ++k) {
       leading.resize(leading.size() + unknowns_, 0);
-      put(one.answer.leading().row(k), std::sqrt(scale),
+      put(rows.row(k), std::sqrt(scale),
           leading.data() + leading.size() - unknowns_ + one.first_unknown);
     }
   }
@@ -165,8 +175,10 @@ void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
     expect(system != nullptr);
     term_.feel(fluid.particles.pressure, felt_.device);
     felt_.pull();
-    for (Coupled& one : bodies_)
-      for (Eigen::Index i = 0; i < one.load.size(); ++i) one.load[i] = felt_.host(one.first_unknown + i) + one.known[i];
+    for (Coupled& one : bodies_) {
+      for (Eigen::Index i = 0; i < one.load.size(); ++i) one.pressed[i] = felt_.host(one.first_unknown + i);
+      one.load = one.pressed + one.known - one.layer * (seen(one) - one.before);
+    }
     return;
   }
   for (Coupled& one : bodies_)
@@ -177,7 +189,7 @@ void Coupler::read_loads(const Fluid& fluid, const PressureSystem* system) {
 /// The speeds of the walls as the solve had them.
 Eigen::VectorXd Coupler::seen(const Coupled& one) const {
   if (options_.way != CouplingWay::joint) return one.base;
-  return one.base + one.answer.matrix() * one.load;
+  return one.base + one.answer.matrix_with_layer() * one.pressed;
 }
 
 Eigen::VectorXd Coupler::residual() const {
@@ -240,7 +252,13 @@ bool Coupler::answer(Fluid& fluid, PressureSystem& system, double dt) {
     }
     return false;
   }
-  const Eigen::VectorXd by = options_.way == CouplingWay::joint ? r : relaxed(r);
+  Eigen::VectorXd by = r;
+  if (options_.way == CouplingWay::joint)
+    for (const Coupled& one : bodies_)
+      by.segment(one.first_unknown, one.base.size()) =
+          one.answer.with_layer(r.segment(one.first_unknown, one.base.size()));
+  else
+    by = relaxed(r);
   for (Coupled& one : bodies_) one.base += by.segment(one.first_unknown, one.base.size());
   change_source(fluid, system, by, dt);
   return true;
@@ -336,7 +354,7 @@ void Coupler::put_back(const State& state) {
   weighs_ = state.weighs;
 }
 
-void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver) {
+void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver, double dt) {
   constexpr double strong = 1e9;  // m/s^2, so that no absolute tolerance of the solver is met
   weighs_ = false;
   Region region("added_mass");
@@ -359,7 +377,8 @@ void Coupler::weigh(const Fluid& fluid, const PressureSystem& system, PressureSo
     felt_.pull();
     double mass = 0;
     for (Eigen::Index i = 0; i < one.mode.size(); ++i) mass -= one.mode[i] * felt_.host(one.first_unknown + i);
-    one.added_mass = one.body.surface.depth() * mass / strong;
+    mass = mass / strong + dt * one.mode.dot(one.layer * one.mode);
+    one.added_mass = one.body.surface.depth() * mass;
   }
 }
 

@@ -62,7 +62,7 @@ class Coupler {
   bool weighs() const { return weighs_; }
   /// After answer(): what it is, of the water as it stands. b = -rho D a for accelerations a of the walls as in the first
   /// dry mode gives the pressure against them, and that the added mass of the mode.
-  void weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver);
+  void weigh(const Fluid& fluid, const PressureSystem& system, PressureSolver& solver, double dt);
 
   /// What lasts from step to step, that of the structures' marches too: to be kept and put back when a step is undone.
   struct State;
@@ -87,7 +87,7 @@ class Coupler {
   /// Of one structure, what lasts from step to step beside its march.
   struct Lasting {
     Eigen::VectorXd placed;   // displacement of the corners where the walls stand [m]
-    Eigen::VectorXd base;     // speeds in the right side of the solve, as they are without any load [m/s]
+    Eigen::VectorXd base;     // speeds in the right side of the solve; joint: as they are without pressure [m/s]
     Eigen::VectorXd speed;    // of the walls in this step [m/s]
     Eigen::VectorXd before;   // in the last one
     Eigen::VectorXd load;     // on the corners
@@ -103,7 +103,9 @@ class Coupler {
     int first_unknown = 0;
     StructureAnswer answer;  // C
     WallQuadrature quadrature;
-    Eigen::VectorXd known;  // part of the load that does not wait for the pressure
+    // The load is that of the particles' pressure, of gravity between them and the wall, and -layer (V - V0).
+    Eigen::VectorXd pressed, known;
+    Eigen::SparseMatrix<double> layer;  // L (structure_answer.hpp)
     Eigen::VectorXd mode;   // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
     March::State start;     // of this step
     March::State foreseen;  // at its end, under the load of the last one

@@ -26,6 +26,15 @@ double largest_change(const std::vector<Eigen::MatrixXd>& from, const std::vecto
   return most;
 }
 
+double largest(const Eigen::SparseMatrix<double>& m) { return m.nonZeros() == 0 ? 0 : m.coeffs().cwiseAbs().maxCoeff(); }
+
+std::vector<Eigen::Index> columns_with_entries(const Eigen::SparseMatrix<double>& m) {
+  std::vector<Eigen::Index> columns;
+  for (Eigen::Index k = 0; k < m.outerSize(); ++k)
+    if (m.col(k).nonZeros() > 0) columns.push_back(k);
+  return columns;
+}
+
 }  // namespace
 
 StructureAnswer::Answer StructureAnswer::turned(Answer answer, const Turns& turns) {
@@ -50,13 +59,39 @@ bool StructureAnswer::renew(const ElasticBody& body, const Eigen::VectorXd& disp
   }
   if (body.solid->linear()) {
     if (anew) now_ = at_rest_;
+    changed_ |= anew;
     return anew;
   }
   Turns turns = body.surface.turn_of_corners(displaced);
   if (!anew && largest_change(turns, turns_) < far) return false;
   turns_ = std::move(turns);
   now_ = turned(at_rest_, turns_);
+  changed_ = true;
   return true;
+}
+
+bool StructureAnswer::take_layer(const Eigen::SparseMatrix<double>& L) {
+  constexpr double little = 0.02;  // of its largest entry
+  if (!changed_ && largest(L - layer_) <= little * largest(layer_)) return false;
+  changed_ = false;
+  layer_ = L;
+  wet_ = columns_with_entries(L);
+  const Eigen::MatrixXd among_wet = Eigen::MatrixXd(L)(wet_, wet_);
+  C_of_wet_ = now_.matrix(Eigen::all, wet_);
+  const Eigen::MatrixXd C_among_wet = C_of_wet_(wet_, Eigen::all);
+  resistance_ =
+      (Eigen::MatrixXd::Identity(among_wet.rows(), among_wet.cols()) + among_wet * C_among_wet).lu().solve(among_wet);
+  with_layer_.matrix = now_.matrix;
+  with_layer_.matrix.noalias() -= (C_of_wet_ * resistance_) * C_of_wet_.transpose();
+  // Of what leads in C alone, l^T l, by the same formula.
+  const Eigen::MatrixXd& l = now_.leading;
+  const Eigen::MatrixXd resisted = Eigen::MatrixXd::Identity(l.rows(), l.rows()) + l * L * l.transpose();
+  with_layer_.leading = resisted.llt().matrixL().solve(l);
+  return true;
+}
+
+Eigen::VectorXd StructureAnswer::with_layer(const Eigen::VectorXd& v) const {
+  return v - C_of_wet_ * (resistance_ * v(wet_));
 }
 
 }  // namespace greenwater

@@ -1,6 +1,7 @@
 #include "coupling/wall_rows.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace greenwater {
@@ -72,6 +73,31 @@ Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadra
         for (int d = 0; d < dim; ++d) force[dim * corners[e] + d] += size * point.shares[e] * point.normal[d];
     });
   return force;
+}
+
+Eigen::SparseMatrix<double> layer_mass(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
+                                       const WetSurface& surface, int dim, int first_face, double rho) {
+  std::vector<double> mass(quadrature.points().size(), 0.0);
+  for (const WallPush& push : pushes)
+    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+      mass[q] += rho * weight * std::fabs(dot(quadrature.points()[q].normal, from_particle));
+    });
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t q = 0; q < mass.size(); ++q) {
+    if (mass[q] == 0) continue;
+    const QuadraturePoint& point = quadrature.points()[q];
+    const auto& corners = surface.corner_of_face()[point.face - first_face];
+    for (int a = 0; a < dim; ++a)
+      for (int b = 0; b < dim; ++b)
+        for (int d = 0; d < dim; ++d)
+          for (int e = 0; e < dim; ++e)
+            entries.emplace_back(dim * corners[a] + d, dim * corners[b] + e,
+                                 mass[q] * point.shares[a] * point.shares[b] * point.normal[d] * point.normal[e]);
+  }
+  const int size = dim * surface.corners();
+  Eigen::SparseMatrix<double> M(size, size);
+  M.setFromTriplets(entries.begin(), entries.end());
+  return M;
 }
 
 }  // namespace greenwater

@@ -17,9 +17,15 @@ WallQuadrature quadrature_of(const WetSurface& surface, const WallFaces& walls, 
 void add_wall_rows(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, const WetSurface& surface,
                    int dim, int first_face, int first_unknown, std::vector<AddedEntry>& rows);
 
-/// What the pressure at the places is above that of the particles that push there, rho g . (x_q - x_i), as forces on the
-/// corners [N/m], in 3-D [N]: known before the pressure is.
+/// The pressure at the places is that of the particles that push there and rho (g - a) . (x_q - x_i), a the acceleration of
+/// the wall. The part of g, as forces on the corners [N/m], in 3-D [N]: known before the pressure is.
 Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
                            const WetSurface& surface, int dim, int first_face, double rho);
+
+/// The part of a is that of a mass that goes with the wall, the fluid between it and the first particles:
+///   M_ab = rho sum_kq W_kq N_a(x_q) N_b(x_q) |n_q . (x_q - x_i)| n_q n_q^T   [kg/m], in 3-D [kg]
+/// for all unknowns of the surface; symmetric, positive semi-definite.
+Eigen::SparseMatrix<double> layer_mass(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
+                                       const WetSurface& surface, int dim, int first_face, double rho);
 
 }  // namespace greenwater
