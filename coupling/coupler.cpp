@@ -284,7 +284,8 @@ const char* Coupler::cure_of_divergence() const {
 
 /// What has diverged ends here, before walls are made of it.
 void Coupler::check_ways(const Fluid& fluid, double dt) const {
-  constexpr double far = 100;  // x spacing
+  // x spacing; beyond one spacing a step the fluid cannot follow what has not waited for it
+  const double far = options_.way == CouplingWay::staggered ? 1 : 100;
   for (const Coupled& one : bodies_) {
     const double way = dt * one.speed.lpNorm<Eigen::Infinity>();
     require<NumericsError>(way <= far * fluid.spacing, "t = ", fluid.time, " s: \"",

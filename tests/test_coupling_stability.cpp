@@ -129,46 +129,38 @@ TEST_CASE(
       const Outcome outcome = ring(ratio, way, 40);
       tell(ratio, way, outcome);
       CHECK(outcome.stable);
-      CHECK(outcome.frequency == Approx(wet).epsilon(0.05));
+      CHECK(outcome.frequency == Approx(wet).epsilon(0.03));
     }
     const Outcome staggered = ring(ratio, "staggered", 40);
     tell(ratio, "staggered", staggered);
     CHECK(staggered.stable == (ratio < 1));
-    CHECK(staggered.alarm.empty() == (ratio < 1));
+    if (ratio < 1) CHECK(staggered.alarm.empty());
+    if (ratio > 1 && staggered.bounded) CHECK_FALSE(staggered.alarm.empty());  // else it has ended before
   }
 }
 
 TEST_CASE(
-    "a diagonal 1.05 times as large bounds what a staggered march makes of a light structure, and leaves it wrong",
+    "a diagonal 1.05 times as large does not make a staggered march of a light structure right",
     "[stability][coupling]") {
   // In one step sound goes 3.5 l0, whatever the step: the plate feels the water that it has reached, and not all of it.
-  std::vector<Outcome> outcomes;
   for (const double C : {1.0, 1.05})
     for (const double ratio : {0.1, 0.5, 2.0, 5.0, 20.0, 100.0}) {
       INFO("ratio " << ratio << ", C = " << C);
       const Outcome outcome =
           ring(ratio, "staggered", 40, {changed("mps.default.diagonal_factor", C), changed("mps.spacing", 0.02)});
       tell(ratio, text_of("staggered, spacing 0.02 m, C = ", C), outcome);
-      if (C == 1 || ratio < 1) CHECK(outcome.stable == (ratio < 1));
-      outcomes.push_back(outcome);
+      CHECK(outcome.stable == (ratio < 1));
     }
-  CHECK(outcomes[6 + 2].bounded);  // ratio 2 with C = 1.05: at twenty times the frequency
-  for (const int k : {2, 3, 4, 5}) CHECK_FALSE(outcomes[6 + k].stable);
 }
 
 TEST_CASE("the added mass that the solve has is that of potential flow", "[validation][coupling]") {
-  // As particles along the span are doubled the error falls: half of it is the surface, half a spacing above the top row.
-  double before = 1;
   for (const int particles : {20, 40}) {
     FluidSimulation simulation(scene_of_text(text_of(column_on_plate(2), "[output]\nhistory_every_steps = 1\n"),
                                              {changed("mps.spacing", 1.0 / particles)}));
     simulation.step();
     const double mass = simulation.coupler().added_mass_ratio(0) * 2700 * 0.05;
-    const double error = std::fabs(mass / exact_added_mass(2) - 1);
     std::cout << particles << " particles along the span: added mass " << mass << " kg/m2, exact "
               << exact_added_mass(2) << '\n';
-    CHECK(error < 0.025);
-    CHECK(error < 0.8 * before);
-    before = error;
+    CHECK(mass == Approx(exact_added_mass(2)).epsilon(0.003));
   }
 }
