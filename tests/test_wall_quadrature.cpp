@@ -1,5 +1,6 @@
 // The load on a surface is the pressure on it, whatever the particles do.
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -256,4 +257,32 @@ TEST_CASE("a wall that moves sweeps its area times its speed, however particles 
         });
       CHECK(swept == Approx(0.5 * area).epsilon(1e-10));
     }
+}
+
+TEST_CASE("pairs that lie evenly about a joint of a bent wall have one image there", "[unit][corners]") {
+  const Arrangement lattice{"lattice", 0.5, 0, 1};  // joints midway between two columns
+  const auto n_of = [&](double bend) {
+    const Fluid fluid = over_floor(2, lattice, 0, bend, false);
+    const auto n = host(fluid.particles.number_density);
+    std::vector<double> sorted(n.data(), n.data() + fluid.particles.count);  // particles are in another order
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+  };
+  const auto flat = n_of(0);
+  for (const double bend : {1e-5, 1e-3, -1e-5, -1e-3}) {  // kinks are a third of it
+    INFO("bend " << bend);
+    Fluid fluid = over_floor(2, lattice, 0, bend, false);
+    SurveyOptions options;
+    options.loads = true;
+    const Survey found = surveyed(fluid, options);
+    double area = 0;  // of pushes within 2 l0 of the joint in the middle
+    for (const WallPush& push : wall_pushes(fluid, found, 0))
+      if (std::fabs(push.from_particle[0] + host(fluid.particles.position)(push.particle, 0) - 12 * l0) < 2 * l0)
+        area += push.area;
+    CHECK(area == Approx(4 * l0).epsilon(2e-3));
+    const auto n = n_of(bend);
+    double worst = 0;
+    for (std::size_t i = 0; i < n.size(); ++i) worst = std::max(worst, std::fabs(n[i] / flat[i] - 1));
+    CHECK(worst < 2e-3);
+  }
 }
