@@ -95,8 +95,9 @@ void check(double ratio, const std::string& scheme, double jitter, double end) {
   CHECK(outcome.least > 0.98);
   CHECK(outcome.most < 1.02);
   CHECK(outcome.deflection == Approx(1).margin(0.01));
+  if (jitter > 0) return;  // a start that is not one of rest
   CHECK(outcome.energy < 1e-4);
-  if (jitter == 0) CHECK(outcome.first_row < 0.003);
+  CHECK(outcome.first_row < 0.003);
 }
 
 }  // namespace
