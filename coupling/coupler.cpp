@@ -162,8 +162,7 @@ void Coupler::hand_over_answers(const Fluid& fluid, double dt) {
       put(matrix.row(row), scale, &C[(one.first_unknown + row) * unknowns_ + one.first_unknown]);
     for (Eigen::Index k = 0; k < rows.rows(); ++k) {
       leading.resize(leading.size() + unknowns_, 0);
-      put(rows.row(k), std::sqrt(scale),
-          leading.data() + leading.size() - unknowns_ + one.first_unknown);
+      put(rows.row(k), std::sqrt(scale), leading.data() + leading.size() - unknowns_ + one.first_unknown);
     }
   }
   term_.set_answer(C, leading);

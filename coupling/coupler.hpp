@@ -106,9 +106,9 @@ class Coupler {
     // The load is that of the particles' pressure, of gravity between them and the wall, and -layer (V - V0).
     Eigen::VectorXd pressed, known;
     Eigen::SparseMatrix<double> layer;  // L (structure_answer.hpp)
-    Eigen::VectorXd mode;   // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
-    March::State start;     // of this step
-    March::State foreseen;  // at its end, under the load of the last one
+    Eigen::VectorXd mode;               // the corners in the first dry mode, of modal mass 1 kg; empty until asked for
+    March::State start;                 // of this step
+    March::State foreseen;              // at its end, under the load of the last one
     CornerMotion motion;
     Exchange<CoordField> velocity, acceleration;
   };

@@ -26,7 +26,9 @@ double largest_change(const std::vector<Eigen::MatrixXd>& from, const std::vecto
   return most;
 }
 
-double largest(const Eigen::SparseMatrix<double>& m) { return m.nonZeros() == 0 ? 0 : m.coeffs().cwiseAbs().maxCoeff(); }
+double largest(const Eigen::SparseMatrix<double>& m) {
+  return m.nonZeros() == 0 ? 0 : m.coeffs().cwiseAbs().maxCoeff();
+}
 
 std::vector<Eigen::Index> columns_with_entries(const Eigen::SparseMatrix<double>& m) {
   std::vector<Eigen::Index> columns;

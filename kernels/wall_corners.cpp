@@ -192,7 +192,7 @@ void add_joints(const WallFaces& walls, WallPanels& made, Corner& corner_of, coo
       if (!reaches(made, f, walls.dim, edge.point, a, 10 * tolerance)) continue;
       if (!reaches(made, g, walls.dim, edge.point, b, 10 * tolerance)) continue;
       const coord angle = std::atan2(a.cross(b).norm(), a.dot(b));
-      if (angle < parallel) continue;  // one on the other: they move differently
+      if (angle < parallel) continue;                           // one on the other: they move differently
       if (angle <= sharpest && (f.bends || g.bends)) continue;  // a closed gap, or one that opens: no water in it
       require(angle > sharpest, "geometry: \"", walls.bodies[f.body].name, "\" and \"", walls.bodies[g.body].name,
               "\" meet at ", angle * 180 / M_PI, " degrees near (", edge.point[0], ", ", edge.point[1], ", ",

@@ -160,7 +160,8 @@ young = 1.2e7
 density = 1100
 poisson = 0.4
 clamp = ["top"]
-)", more, R"(
+)",
+                   more, R"(
 [structure.fem]
 divisions = [2, 20]
 [[probe]]

@@ -45,9 +45,9 @@ scheme = ")",
                              scheme, "\"\n");
   for (const char* wall : {"floor", "side", "slope"})
     for (const char* reading : {"reaction", "neumann"})
-      text += text_of("[[probe]]\nname = \"", wall, "_", reading, "\"\nkind = \"wall_force\"\nwall = \"", wall,
-                      "\"\nreading = \"", reading, "\"\ncomponent = \"", std::string(wall) == "floor" ? "y" : "x",
-                      "\"\n");
+      text +=
+          text_of("[[probe]]\nname = \"", wall, "_", reading, "\"\nkind = \"wall_force\"\nwall = \"", wall,
+                  "\"\nreading = \"", reading, "\"\ncomponent = \"", std::string(wall) == "floor" ? "y" : "x", "\"\n");
   return text;
 }
 

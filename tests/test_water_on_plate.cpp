@@ -77,7 +77,8 @@ Outcome stand(double ratio, const std::string& scheme, double jitter, double end
   outcome.deflection /= counted;
   outcome.iterations /= steps;
   for (const Point& x : places_of(simulation)) {
-    const double bent = simulation.sample(0) * std::pow(4 * x[0] * (1 - x[0]), 2);  // the plate, nearly; 1e-3 l0 at most
+    const double bent =
+        simulation.sample(0) * std::pow(4 * x[0] * (1 - x[0]), 2);  // the plate, nearly; 1e-3 l0 at most
     const double off = (x[1] - bent) / spacing - 0.5;
     if (off < 0.5) outcome.first_row = std::max(outcome.first_row, std::fabs(off));
   }
