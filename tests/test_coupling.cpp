@@ -159,6 +159,40 @@ TEST_CASE("what the structure answers in the pressure solve is symmetric and nev
   CHECK(values.maxCoeff() > 0);
 }
 
+TEST_CASE("fluid that goes with the walls is in the structure's answer as its mass, however heavy",
+          "[unit][coupling]") {
+  const FluidSimulation simulation(scene_of_text(plate_in_water(2)));
+  const ElasticBody& body = simulation.coupler().body(0);
+  StructureAnswer answer;
+  const Eigen::Index size = 2 * body.surface.corners();
+  answer.renew(body, Vector::Zero(size), dt);
+  const Eigen::MatrixXd C = answer.matrix();
+  // The mass of the first unknowns, up to a thousand times that of the structure among them.
+  const Eigen::Index wet = size / 2;
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (Eigen::Index i = 0; i < wet; ++i)
+    for (Eigen::Index k = 0; k < wet; ++k) B(i, k) = any(generator);
+  for (const double ratio : {0.1, 10.0, 1000.0}) {
+    INFO("ratio " << ratio);
+    Eigen::MatrixXd L = B * B.transpose();
+    L *= ratio / (C * L).norm();
+    const Eigen::SparseMatrix<double> sparse = L.sparseView();
+    CHECK(answer.take_layer(sparse));
+    CHECK_FALSE(answer.take_layer(1.01 * sparse));
+    CHECK(answer.take_layer(1.1 * sparse));
+    CHECK(answer.take_layer(sparse));
+    const Eigen::MatrixXd with = Eigen::MatrixXd::Identity(size, size) + C * L;
+    const Eigen::MatrixXd exact = with.partialPivLu().solve(C), &found = answer.matrix_with_layer();
+    CHECK((found - exact).norm() < 1e-9 * C.norm());
+    CHECK((found - found.transpose()).norm() < 1e-9 * C.norm());
+    CHECK(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(found).eigenvalues().minCoeff() > -1e-9 * C.norm());
+    const Vector v = random_vector(static_cast<int>(size), 6);
+    CHECK((answer.with_layer(v) - with.partialPivLu().solve(v)).norm() < 1e-9 * v.norm() * with.norm());
+  }
+}
+
 TEST_CASE("water that turns with its walls has no divergence, whatever walls there are", "[unit][coupling]") {
   for (const int dimension : {2, 3}) {
     Interface at(scene_of_text(plate_in_water(dimension)));
