@@ -48,7 +48,7 @@ struct Interface {
     quadrature.weigh(pushes);
     add_wall_rows(pushes, quadrature, *surface, walls.dim, first_face, 0, rows);
     SweptVolume swept;
-    swept.gather(pushes, quadrature, [&](int face, const Triple& x) {
+    swept.gather(pushes, quadrature, SweptVolume::Share::whole, [&](int face, const Triple& x) {
       const WallFace& moved = fluid.faces.faces[face];
       const auto shares = shares_at(moved, walls.dim, x);
       Triple at{};

@@ -160,7 +160,7 @@ TEST_CASE("with fits too the wall's reaction does the fluid's work", "[unit][hig
     const Survey found = surveyed(fluid, options);
     RigidWalls walls;
     walls.watch(0);
-    walls.join(fluid, found, found.rhs, dt);
+    walls.join(fluid, found, found.rhs, dt, SweptVolume::Share::whole);
     // The fluid rests: all divergence is the wall's.
     const auto b = host(found.rhs);
     const auto p = host(fluid.particles.pressure);

@@ -88,7 +88,8 @@ void RigidWalls::add_rows(const Fluid& fluid, const std::vector<WallPush>& pushe
   }
 }
 
-void RigidWalls::join(const Fluid& fluid, const Survey& survey, const ScalarField& rhs, real dt) {
+void RigidWalls::join(const Fluid& fluid, const Survey& survey, const ScalarField& rhs, real dt,
+                      SweptVolume::Share share) {
   Region region("wall_loads");
   const int dim = fluid.particles.dim;
   rows_.clear();
@@ -104,7 +105,7 @@ void RigidWalls::join(const Fluid& fluid, const Survey& survey, const ScalarFiel
     for (std::size_t k = 0; k < watched_.size(); ++k)
       if (watched_[k] == body) add_rows(fluid, pushes, quadrature, static_cast<int>(k));
     if (!sweeps) continue;
-    swept_.gather(pushes, quadrature, [&](int f, const Triple& x) {
+    swept_.gather(pushes, quadrature, share, [&](int f, const Triple& x) {
       const WallFace& face = fluid.faces.faces[f];
       return mixed(face, dim, shares_at(face, dim, x), &WallPoint::velocity);
     });

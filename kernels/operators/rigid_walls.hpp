@@ -2,6 +2,7 @@
 // What the fluid and walls that are no structures do to each other beyond the survey: the force of the fluid on a body (its
 // reaction), and the volume that a body sweeps.
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <vector>
@@ -16,19 +17,26 @@ namespace greenwater {
 ///
 ///   sum_q W_kq n_q . (v(x_q) - u(x_q)) - P_k n_k . (v(x_k) - u(x_k))
 ///
-/// over V, with the velocity u that the fluid's particles have at that place. Where fluid and wall move together, both parts
-/// are 0. `speed(face, x)` gives v, the velocity of a wall.
+/// over V, with the velocity u of the fluid there (flow_at()). Where fluid and wall move together, both parts are 0.
+/// `speed(face, x)` gives v, the velocity of a wall.
+///
+/// A row far from its wall brings up several times its own part. The pressure solve knows nothing of that but where the wall is
+/// a structure's, and overshoots from step to step: Share::at_most_own makes W_kq smaller where their sum is more than P_k.
 class SweptVolume {
  public:
+  enum class Share { whole, at_most_own };
   template <class Speed>
-  void gather(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, Speed speed) {
+  void gather(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, Share share, Speed speed) {
     for (const WallPush& push : pushes) {
-      double swept = -push.area * dot(push.normal, difference(speed(push.face, push.place), push.flow));
+      const Triple seen = difference(speed(push.face, push.place), flow_at(push, push.from_particle));
+      double swept = 0, part = 0;
       quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
         const QuadraturePoint& point = quadrature.points()[q];
-        const Triple x = sum(push.place, difference(from_particle, push.from_particle));
-        swept += weight * dot(point.normal, difference(speed(point.face, point.place), flow_at(push, x)));
+        swept += weight * dot(point.normal, difference(speed(point.face, point.place), flow_at(push, from_particle)));
+        part += weight;
       });
+      if (share == Share::at_most_own && part > std::max(push.area, 0.0)) swept *= std::max(push.area, 0.0) / part;
+      swept -= push.area * dot(push.normal, seen);
       if (swept != 0) entries_.push_back({push.particle, 0, static_cast<real>(swept)});
     }
   }
@@ -54,7 +62,9 @@ class RigidWalls {
   bool any_watched() const { return !watched_.empty(); }
 
   /// After a survey that has kept its divergence_correction: walls that move go into the source.
-  void join(const Fluid& fluid, const Survey& survey, const ScalarField& rhs, real dt);
+  /// With `whole` shares the work of the reactions is that of the fluid's pressure; a run has the others, which are stable.
+  void join(const Fluid& fluid, const Survey& survey, const ScalarField& rhs, real dt,
+            SweptVolume::Share share = SweptVolume::Share::at_most_own);
 
   /// After the pressure solve: forces on the bodies that are watched [N/m], in 3-D [N], of the pressure at the wall,
   ///   p_i + rho (g - a_w) . (x_q - x_i)

@@ -140,10 +140,7 @@ struct Pusher {
     }
     for (int d = 0; d < Dim; ++d) {
       made.flow[d] = u(i, d);
-      for (int e = 0; e < Dim; ++e) {
-        made.flow_gradient[d][e] = gradient.of[d][e];
-        made.flow[d] += gradient.of[d][e] * made.from_particle[e];
-      }
+      for (int e = 0; e < Dim; ++e) made.flow_gradient[d][e] = gradient.of[d][e];
     }
     return made;
   }

@@ -20,7 +20,7 @@ struct WallPush {
   Triple normal{};         // unit, into the wall
   double area = 0;         // force per pressure along the normal [m], in 3-D [m^2]; below 0 in a bad neighbourhood only
   Triple from_particle{};  // place - x_i [m]
-  Triple flow{};           // velocity of the fluid, as its particles have it at the place [m/s]
+  Triple flow{};           // velocity of the particle [m/s]
   double flow_gradient[3][3] = {};  // (d, e) du_d / dx_e, of neighbours alone: exact for a linear flow [1/s]
   Triple drive{};                   // g and body force of the particle [m/s^2]
 };
@@ -29,10 +29,12 @@ struct WallPush {
 /// the divergence of the particle by area (normal . v) / V.
 std::vector<WallPush> wall_pushes(const Fluid& fluid, const Survey& survey, int body);
 
-/// Velocity of the fluid at x, which is beside the place of the push.
-inline Triple flow_at(const WallPush& push, const Triple& x) {
+/// Velocity of the fluid over a point of the wall, x_q - x_i from the particle; beside it to first order, as in a rotation, and
+/// along the normal as the particle has it: a difference to the second row, carried on to the wall, would be as large as that
+/// row is out of step, and more the farther the first one is from the wall, which no solve takes back.
+inline Triple flow_at(const WallPush& push, const Triple& from_particle) {
   Triple u = push.flow;
-  const Triple way = difference(x, push.place);
+  const Triple way = sum(from_particle, scaled(push.normal, -dot(from_particle, push.normal)));
   for (int d = 0; d < 3; ++d)
     for (int e = 0; e < 3; ++e) u[d] += push.flow_gradient[d][e] * way[e];
   return u;
