@@ -217,6 +217,17 @@ Eigen::VectorXd Coupler::relaxed(const Eigen::VectorXd& residual) {
   return relaxation_ * residual;
 }
 
+/// Of the speeds in the right side. Those that the solve has with them answer with the layer of fluid as well.
+Eigen::VectorXd Coupler::correction_of(const Eigen::VectorXd& residual) {
+  if (options_.way != CouplingWay::joint) return relaxed(residual);
+  Eigen::VectorXd by(unknowns_);
+  for (const Coupled& one : bodies_) {
+    const Eigen::Index first = one.first_unknown, size = one.base.size();
+    by.segment(first, size) = one.answer.with_layer(residual.segment(first, size));
+  }
+  return by;
+}
+
 void Coupler::change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt) {
   for (Eigen::Index i = 0; i < by.size(); ++i) change_.host(i) = static_cast<real>(by[i]);
   change_.push();
@@ -251,13 +262,7 @@ bool Coupler::answer(Fluid& fluid, PressureSystem& system, double dt) {
     }
     return false;
   }
-  Eigen::VectorXd by = r;
-  if (options_.way == CouplingWay::joint)
-    for (const Coupled& one : bodies_)
-      by.segment(one.first_unknown, one.base.size()) =
-          one.answer.with_layer(r.segment(one.first_unknown, one.base.size()));
-  else
-    by = relaxed(r);
+  const Eigen::VectorXd by = correction_of(r);
   for (Coupled& one : bodies_) one.base += by.segment(one.first_unknown, one.base.size());
   change_source(fluid, system, by, dt);
   return true;

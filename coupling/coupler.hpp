@@ -21,7 +21,7 @@
 #include "coupling/structure_answer.hpp"
 #include "coupling/surface_load.hpp"
 #include "coupling/wall_rows.hpp"
-#include "kernels/operators/rigid_walls.hpp"
+#include "kernels/operators/swept_volume.hpp"
 #include "kernels/pressure_solver.hpp"
 #include "kernels/survey.hpp"
 
@@ -125,6 +125,7 @@ class Coupler {
   void look_at_walls(const Fluid& fluid, const Survey& survey, PressureSystem& system, double dt);
   void change_source(const Fluid& fluid, PressureSystem& system, const Eigen::VectorXd& by, double dt);
   Eigen::VectorXd residual() const;
+  Eigen::VectorXd correction_of(const Eigen::VectorXd& residual);
   Eigen::VectorXd relaxed(const Eigen::VectorXd& residual);
   bool agreed(const Eigen::VectorXd& residual, const Fluid& fluid, double dt) const;
   Eigen::VectorXd seen(const Coupled& one) const;

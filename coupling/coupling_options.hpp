@@ -10,7 +10,7 @@ enum class CouplingWay {
 };
 
 enum class LoadReading {
-  transpose,       // of what the wall does to the divergence: exact in work (kernels/operators/rigid_walls.hpp)
+  transpose,       // of what the wall does to the divergence: exact in work (kernels/operators/swept_volume.hpp)
   least_squares,   // pressure at the wall, fitted with the wall's condition (Reading::neumann)
   kernel_average,  // the paper's weighted mean of the particles in sight (Reading::average)
 };
