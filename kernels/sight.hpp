@@ -181,8 +181,7 @@ struct Sight {
   }
 
   // The line to the image sweeps this angle round the edge; beyond 180 degrees the path round the edge's other side is
-  // the shorter one. Shares fall from 1 to 0 there, and those of both sides make up 1. In a blunt corner, where paths of two
-  // reflections are left out, it is beyond the bisector: lattices have many pairs that lie evenly about a joint of panels.
+  // the shorter one. Shares fall from 1 to 0 there, and those of both sides make up 1.
   KOKKOS_INLINE_FUNCTION coord share_at(const Joint& q, int first, int length, const Point& a, const Point& b) const {
     coord at_a, at_b;
     if (!inside(q, a, at_a) || !inside(q, b, at_b)) return 0;
@@ -194,7 +193,7 @@ struct Sight {
   }
 
   KOKKOS_INLINE_FUNCTION static coord share_of_sweep(const Joint& q, coord sweep) {
-    const coord left = (q.angle > blunt ? q.angle : half_turn) - sweep;
+    const coord left = (q.angle > half_turn ? q.angle : half_turn) - sweep;
     if (left >= q.blend + 1e-9) return 1;
     if (left <= -q.blend - 1e-9) return 0;
     return q.blend > 1e-6 ? 0.5 + 0.5 * left / q.blend : 0.5;

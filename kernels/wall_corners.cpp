@@ -15,6 +15,9 @@ constexpr coord right_angle = 1e-9;    // cosine below which two panels stand at
 constexpr coord sharpest = M_PI / 36;  // 5 degrees
 // Above 160 degrees a path of two reflections grazes both walls: left out, as in a finely cut surface they are many.
 constexpr coord bluntest = M_PI * 8 / 9;
+// Of a joint that bends a little: lattices have many pairs that lie evenly about it, and in a narrower blend these would have a
+// whole image in each panel.
+constexpr coord least_blend = M_PI / 18;
 
 struct Edge {
   Vector point, direction;
@@ -210,6 +213,7 @@ void add_joints(const WallFaces& walls, WallPanels& made, Corner& corner_of, coo
       put(q.across, b.dot(n) < 0 ? Vector(-n) : n);
       q.angle = angle;
       q.blend = std::max(0.0, std::min(M_PI / 4, M_PI - angle));
+      if (angle > bluntest && M_PI - angle > parallel) q.blend = std::max(q.blend, least_blend);
       corner_of.joints.push_back(static_cast<int>(made.joints.size()));
       made.joints.push_back(q);
       const bool bend = angle > bluntest && (f.body == g.body || (f.bends && g.bends));
