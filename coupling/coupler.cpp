@@ -132,7 +132,7 @@ void Coupler::look_at_walls(const Fluid& fluid, const Survey& survey, PressureSy
       answers_changed_ |= one.answer.take_layer(one.layer);
       one.layer = one.answer.layer();
     }
-    swept_.gather(pushes, one.quadrature, SweptVolume::Share::whole, [&](int face, const Triple& x) {
+    swept_.gather(pushes, one.quadrature, [&](int face, const Triple& x) {
       const auto shares = shares_at(fluid.faces.faces[face], dim, x);
       const auto& corners = one.body.surface.corner_of_face()[face - one.body.first_face];
       Triple v{};

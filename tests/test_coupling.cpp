@@ -48,13 +48,14 @@ struct Interface {
     quadrature.weigh(pushes);
     add_wall_rows(pushes, quadrature, *surface, walls.dim, first_face, 0, rows);
     SweptVolume swept;
-    swept.gather(pushes, quadrature, SweptVolume::Share::whole, [&](int face, const Triple& x) {
+    const auto speed = [&](int face, const Triple& x) {
       const WallFace& moved = fluid.faces.faces[face];
       const auto shares = shares_at(moved, walls.dim, x);
       Triple at{};
       for (int e = 0; e < walls.dim; ++e) at = sum(at, scaled(moved.corner[e].velocity, shares[e]));
       return at;
-    });
+    };
+    swept.gather(pushes, quadrature, speed, SweptVolume::Share::whole);
     swept.add_to(found.rhs, found.fixed, source_per_volume(fluid, dt));
   }
 

@@ -88,10 +88,11 @@ void RigidWalls::join(const Fluid& fluid, const Survey& survey, const ScalarFiel
     for (std::size_t k = 0; k < watched_.size(); ++k)
       if (watched_[k] == body) add_rows(fluid, pushes, quadrature, static_cast<int>(k));
     if (!sweeps) continue;
-    swept_.gather(pushes, quadrature, share, [&](int f, const Triple& x) {
+    const auto speed = [&](int f, const Triple& x) {
       const WallFace& face = fluid.faces.faces[f];
       return mixed(face, dim, shares_at(face, dim, x), &WallPoint::velocity);
-    });
+    };
+    swept_.gather(pushes, quadrature, speed, share);
   }
   swept_.add_to(rhs, survey.fixed, source_per_volume(fluid, dt));
   if (!watched_.empty()) term_.set_rows(dim * static_cast<int>(watched_.size()), rows_);

@@ -20,7 +20,6 @@ class RigidWalls {
   bool any_watched() const { return !watched_.empty(); }
 
   /// After a survey that has kept its divergence_correction: walls that move go into the source.
-  /// With `whole` shares the work of the reactions is that of the fluid's pressure; a run has the others, which are stable.
   void join(const Fluid& fluid, const Survey& survey, const ScalarField& rhs, real dt,
             SweptVolume::Share share = SweptVolume::Share::at_most_own);
 

@@ -17,13 +17,15 @@ namespace greenwater {
 /// over V, with the velocity u of the fluid there (flow_at()). Where fluid and wall move together, both parts are 0.
 /// `speed(face, x)` gives v, the velocity of a wall.
 ///
-/// A row far from its wall brings up several times its own part. The pressure solve knows nothing of that but where the wall is
-/// a structure's, and overshoots from step to step: Share::at_most_own makes W_kq smaller where their sum is more than P_k.
+/// A row far from its wall brings up several times its own part, as do the few particles that a jet first brings to a wall.
+/// The images, with which pressure answers, have P_k: more than that overshoots from step to step. Share::at_most_own makes
+/// W_kq smaller where their sum is more than P_k. With Share::whole the power of the walls is that of the pressure, exactly.
 class SweptVolume {
  public:
   enum class Share { whole, at_most_own };
   template <class Speed>
-  void gather(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, Share share, Speed speed) {
+  void gather(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, Speed speed,
+              Share share = Share::at_most_own) {
     for (const WallPush& push : pushes) {
       const Triple seen = difference(speed(push.face, push.place), flow_at(push, push.from_particle));
       double swept = 0, part = 0;
