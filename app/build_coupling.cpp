@@ -37,18 +37,20 @@ std::vector<Facet> wet_facets(const StructureCase& given) {
 }  // namespace
 
 std::vector<Structure> build_structures(const Scene& scene) {
+  constexpr int most_halvings = 4;  // that substeps are made for: a step that is undone is a whole number of them
   const double step = scene.has_fluid ? step_at_rest(scene) : scene.step;
   const auto build = [&](int least_substeps) {
     std::vector<Structure> structures;
     for (const StructureCase& given : scene.structures) structures.emplace_back(scene, given, step, least_substeps);
     return structures;
   };
-  std::vector<Structure> structures = build(1);
-  const bool steps_differ = scene.has_fluid && (scene.mps.adaptive || scene.mps.undo.halvings > 0);
+  const int halvings = scene.mps.undo.halvings;
+  const bool steps_differ = scene.has_fluid && (scene.mps.adaptive || halvings > 0);
+  int least = steps_differ ? 1 << std::min(halvings, most_halvings) : 1;
+  std::vector<Structure> structures = build(least);
   if (!steps_differ || structures.size() < 2) return structures;
-  int most = 1;
-  for (const Structure& structure : structures) most = std::max(most, structure.substeps());
-  return build(most);
+  for (const Structure& structure : structures) least = std::max(least, structure.substeps());
+  return build(least);
 }
 
 std::vector<WetSurface> add_wet_surfaces(const Scene& scene, const std::vector<Structure>& structures,
