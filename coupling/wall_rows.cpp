@@ -51,7 +51,7 @@ void add_wall_rows(const std::vector<WallPush>& pushes, const WallQuadrature& qu
   OneParticle sums(first_unknown, dim * surface.corners());
   for (std::size_t k = 0; k < pushes.size(); ++k) {
     const WallPush& push = pushes[k];
-    quadrature.for_each(push, [&](int q, const Triple&, double weight) {
+    quadrature.for_each(k, [&](int q, const Triple&, double weight) {
       const QuadraturePoint& point = quadrature.points()[q];
       const auto& corners = surface.corner_of_face()[point.face - first_face];
       for (int e = 0; e < dim; ++e)
@@ -64,11 +64,11 @@ void add_wall_rows(const std::vector<WallPush>& pushes, const WallQuadrature& qu
 Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
                            const WetSurface& surface, int dim, int first_face, double rho) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(dim * surface.corners());
-  for (const WallPush& push : pushes)
-    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+  for (std::size_t k = 0; k < pushes.size(); ++k)
+    quadrature.for_each(k, [&](int q, const Triple& from_particle, double weight) {
       const QuadraturePoint& point = quadrature.points()[q];
       const auto& corners = surface.corner_of_face()[point.face - first_face];
-      const double size = weight * rho * dot(push.drive, from_particle);
+      const double size = weight * rho * dot(pushes[k].drive, from_particle);
       for (int e = 0; e < dim; ++e)
         for (int d = 0; d < dim; ++d) force[dim * corners[e] + d] += size * point.shares[e] * point.normal[d];
     });
@@ -77,22 +77,29 @@ Eigen::VectorXd known_load(const std::vector<WallPush>& pushes, const WallQuadra
 
 Eigen::SparseMatrix<double> layer_mass(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
                                        const WetSurface& surface, int dim, int first_face, double rho) {
-  std::vector<double> mass(quadrature.points().size(), 0.0);
-  for (const WallPush& push : pushes)
-    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
-      mass[q] += rho * weight * std::fabs(dot(quadrature.points()[q].normal, from_particle));
+  const auto& points = quadrature.points();
+  std::vector<double> mass(points.size(), 0.0);
+  for (std::size_t k = 0; k < pushes.size(); ++k)
+    quadrature.for_each(k, [&](int q, const Triple& from_particle, double weight) {
+      mass[q] += rho * weight * std::fabs(dot(points[q].normal, from_particle));
     });
   std::vector<Eigen::Triplet<double>> entries;
-  for (std::size_t q = 0; q < mass.size(); ++q) {
-    if (mass[q] == 0) continue;
-    const QuadraturePoint& point = quadrature.points()[q];
-    const auto& corners = surface.corner_of_face()[point.face - first_face];
+  for (std::size_t q = 0; q < mass.size();) {  // places of a face stand together, and have one normal
+    const int face = points[q].face;
+    const Triple n = points[q].normal;
+    double shared[3][3] = {}, whole = 0;
+    for (; q < mass.size() && points[q].face == face; ++q) {
+      whole += mass[q];
+      for (int a = 0; a < dim; ++a)
+        for (int b = 0; b < dim; ++b) shared[a][b] += mass[q] * points[q].shares[a] * points[q].shares[b];
+    }
+    if (whole == 0) continue;
+    const auto& corners = surface.corner_of_face()[face - first_face];
     for (int a = 0; a < dim; ++a)
       for (int b = 0; b < dim; ++b)
         for (int d = 0; d < dim; ++d)
           for (int e = 0; e < dim; ++e)
-            entries.emplace_back(dim * corners[a] + d, dim * corners[b] + e,
-                                 mass[q] * point.shares[a] * point.shares[b] * point.normal[d] * point.normal[e]);
+            entries.emplace_back(dim * corners[a] + d, dim * corners[b] + e, shared[a][b] * n[d] * n[e]);
   }
   const int size = dim * surface.corners();
   Eigen::SparseMatrix<double> M(size, size);

@@ -41,10 +41,11 @@ Loads loads_of(Fluid& fluid, int body, WetSide wet, const std::function<bool(con
   const auto x = host(fluid.particles.position);
   const auto& points = quadrature.points();
   std::vector<double> constant(points.size(), 0), at_rest(points.size(), 0);
-  for (const WallPush& push : pushes) {
+  for (std::size_t k = 0; k < pushes.size(); ++k) {
+    const WallPush& push = pushes[k];
     Triple xi{};
     for (int d = 0; d < fluid.particles.dim; ++d) xi[d] = x(push.particle, d);
-    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+    quadrature.for_each(k, [&](int q, const Triple& from_particle, double weight) {
       constant[q] += weight;
       at_rest[q] += weight * (rest_pressure(fluid, xi) + fluid.rho * dot(push.drive, from_particle));
     });
@@ -251,8 +252,8 @@ TEST_CASE("a wall that moves sweeps its area times its speed, however particles 
         area += std::min(1.0, quadrature.cover(static_cast<int>(q)) / WallQuadrature::least_cover) *
                 quadrature.points()[q].area;
       double swept = 0;  // the fluid is at rest: what the places give, and nothing else
-      for (const WallPush& push : pushes)
-        quadrature.for_each(push, [&](int q, const Triple&, double weight) {
+      for (std::size_t k = 0; k < pushes.size(); ++k)
+        quadrature.for_each(k, [&](int q, const Triple&, double weight) {
           swept -= weight * 0.5 * quadrature.points()[q].normal[up];
         });
       CHECK(swept == Approx(0.5 * area).epsilon(1e-10));

@@ -57,9 +57,10 @@ WallQuadrature& RigidWalls::quadrature_of(const Fluid& fluid, int body, bool mov
 void RigidWalls::add_rows(const Fluid& fluid, const std::vector<WallPush>& pushes, const WallQuadrature& quadrature,
                           int number) {
   const int dim = fluid.particles.dim;
-  for (const WallPush& push : pushes) {
+  for (std::size_t k = 0; k < pushes.size(); ++k) {
+    const WallPush& push = pushes[k];
     Triple all{};
-    quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+    quadrature.for_each(k, [&](int q, const Triple& from_particle, double weight) {
       const QuadraturePoint& point = quadrature.points()[q];
       const Triple a_w = mixed(fluid.faces.faces[point.face], dim, point.shares, &WallPoint::acceleration);
       const double offset = fluid.rho * dot(difference(push.drive, a_w), from_particle);

@@ -26,10 +26,11 @@ class SweptVolume {
   template <class Speed>
   void gather(const std::vector<WallPush>& pushes, const WallQuadrature& quadrature, Speed speed,
               Share share = Share::at_most_own) {
-    for (const WallPush& push : pushes) {
+    for (std::size_t k = 0; k < pushes.size(); ++k) {
+      const WallPush& push = pushes[k];
       const Triple seen = difference(speed(push.face, push.place), flow_at(push, push.from_particle));
       double swept = 0, part = 0;
-      quadrature.for_each(push, [&](int q, const Triple& from_particle, double weight) {
+      quadrature.for_each(k, [&](int q, const Triple& from_particle, double weight) {
         const QuadraturePoint& point = quadrature.points()[q];
         swept += weight * dot(point.normal, difference(speed(point.face, point.place), flow_at(push, from_particle)));
         part += weight;

@@ -107,7 +107,6 @@ WallQuadrature::WallQuadrature(const WallFaces& walls, const std::vector<int>& f
     point.around = around;
   }
   sum_.assign(points_.size(), 0);
-  factor_.assign(points_.size(), 0);
 }
 
 void WallQuadrature::move_to(const WallFaces& walls) {
@@ -160,13 +159,19 @@ void WallQuadrature::sort_into_cells() {
 
 void WallQuadrature::weigh(const std::vector<WallPush>& pushes) {
   std::fill(sum_.begin(), sum_.end(), 0.0);
+  given_.clear();
+  first_given_.assign(1, 0);
   for (const WallPush& push : pushes) {
-    if (!(push.area > 0)) continue;
-    for_each_near(push.place, push.normal, [&](int q, const Triple&, double psi) { sum_[q] += push.area * psi; });
+    if (push.area > 0)
+      for_each_near(push.place, push.normal, [&](int q, const Triple& way, double psi) {
+        sum_[q] += push.area * psi;
+        given_.push_back({q, push.area * psi, sum(push.from_particle, way)});
+      });
+    first_given_.push_back(given_.size());
   }
-  for (std::size_t q = 0; q < points_.size(); ++q) {
-    const QuadraturePoint& point = points_[q];
-    factor_[q] = point.area / std::max(sum_[q], least_cover * point.around);
+  for (Given& part : given_) {
+    const QuadraturePoint& point = points_[part.place];
+    part.weight *= point.area / std::max(sum_[part.place], least_cover * point.around);
   }
 }
 

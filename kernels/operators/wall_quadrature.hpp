@@ -36,7 +36,7 @@ class WallQuadrature {
 
   /// The faces have moved.
   void move_to(const WallFaces& walls);
-  /// For the pushes as they are now.
+  /// For the pushes as they are now. What each gives to each place is kept until the next call.
   void weigh(const std::vector<WallPush>& pushes);
 
   const std::vector<QuadraturePoint>& points() const { return points_; }
@@ -44,12 +44,11 @@ class WallQuadrature {
   double cover(int q) const { return sum_[q] / points_[q].around; }
   static constexpr double least_cover = 0.2;
 
-  /// Calls f(place, x_q - x_i, W_kq) for each place that takes a part of the push, after weigh().
+  /// Calls f(place, x_q - x_i, W_kq) for each place that takes a part of the push with this number in weigh().
   template <class F>
-  void for_each(const WallPush& push, F f) const {
-    for_each_near(push.place, push.normal, [&](int q, const Triple& way, double psi) {
-      if (push.area > 0) f(q, sum(push.from_particle, way), push.area * psi * factor_[q]);
-    });
+  void for_each(std::size_t push, F f) const {
+    for (std::size_t k = first_given_[push]; k < first_given_[push + 1]; ++k)
+      f(given_[k].place, given_[k].from_particle, given_[k].weight);
   }
 
  private:
@@ -62,8 +61,16 @@ class WallQuadrature {
   double radius_ = 0;  // R [m]
   double turned_ = 1;  // sign of the faces' normals
   bool both_ = false;
+  struct Given {
+    int place;
+    double weight;         // W_kq
+    Triple from_particle;  // x_q - x_i
+  };
+
   std::vector<QuadraturePoint> points_;
-  std::vector<double> sum_, factor_;  // A_q over the denominator
+  std::vector<double> sum_;
+  std::vector<Given> given_;  // of all pushes, one after the other
+  std::vector<std::size_t> first_given_;
   std::vector<Triple> periods_;       // by which a push is moved to be beside a place; the first one is 0
   Triple low_{}, high_{};             // of the places [m]
   double cell_ = 1;                   // [m]
