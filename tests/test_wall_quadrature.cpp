@@ -253,9 +253,8 @@ TEST_CASE("a wall that moves sweeps its area times its speed, however particles 
                 quadrature.points()[q].area;
       double swept = 0;  // the fluid is at rest: what the places give, and nothing else
       for (std::size_t k = 0; k < pushes.size(); ++k)
-        quadrature.for_each(k, [&](int q, const Triple&, double weight) {
-          swept -= weight * 0.5 * quadrature.points()[q].normal[up];
-        });
+        quadrature.for_each(
+            k, [&](int q, const Triple&, double weight) { swept -= weight * 0.5 * quadrature.points()[q].normal[up]; });
       CHECK(swept == Approx(0.5 * area).epsilon(1e-10));
     }
 }

@@ -71,9 +71,9 @@ class WallQuadrature {
   std::vector<double> sum_;
   std::vector<Given> given_;  // of all pushes, one after the other
   std::vector<std::size_t> first_given_;
-  std::vector<Triple> periods_;       // by which a push is moved to be beside a place; the first one is 0
-  Triple low_{}, high_{};             // of the places [m]
-  double cell_ = 1;                   // [m]
+  std::vector<Triple> periods_;  // by which a push is moved to be beside a place; the first one is 0
+  Triple low_{}, high_{};        // of the places [m]
+  double cell_ = 1;              // [m]
   int cells_[3] = {1, 1, 1};
   std::vector<int> first_, order_;  // of each cell
 };
