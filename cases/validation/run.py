@@ -109,7 +109,9 @@ def report(options, case, runs, measured):
     rows = figures.table(chosen, beside)
     print(f"{options.case}: {case.TITLE} ({options.size})")
     print("\n".join([figures.as_columns(rows), *notes]))
-    if options.write:
+    if options.write and not runs[first].done:
+        print(f"README.md stays as it is: no run of scheme {first} came to its end.")
+    elif options.write:
         folder = HERE / options.case
         any_run = next(iter(runs[first].done.values()))
         command = f"cases/validation/run.py {options.case} --size {options.size}"
