@@ -56,8 +56,10 @@ class FluidSimulation : public Simulation {
   struct Tries {
     int failed = 0;
     double first = 0, least = 0;  // the first one, and the shortest that is allowed [s]
+    double energy = 0;            // of the fluid before them [J/m], in 3-D [J]
   };
-  void take(double dt);
+  void take(double dt, const Tries& tries);
+  void check_energy(double before) const;
   double shorter(double dt, Tries& tries, const std::string& fault);
   double time_after(double dt) const;
   void refuse(const StepReport& report) const;
