@@ -56,10 +56,8 @@ class FluidSimulation : public Simulation {
   struct Tries {
     int failed = 0;
     double first = 0, least = 0;  // the first one, and the shortest that is allowed [s]
-    double energy = 0;            // of the fluid before them [J/m], in 3-D [J]
   };
-  void take(double dt, const Tries& tries);
-  void check_energy(double before) const;
+  void take(double dt);
   double shorter(double dt, Tries& tries, const std::string& fault);
   double time_after(double dt) const;
   void refuse(const StepReport& report) const;
@@ -72,7 +70,6 @@ class FluidSimulation : public Simulation {
   double sample_structure(const ProbeCase& probe);
   /// Particles that are there no more. What a step that is undone has retired is back, so nobody counts them one by one.
   std::int64_t lost() const { return at_start_ - fluid_.particles.count; }
-  double energy(const FluidSums& sums) const { return sums.kinetic + sums.potential; }
 
   Scene scene_;
   std::vector<Structure> structures_;

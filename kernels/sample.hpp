@@ -42,6 +42,8 @@ struct FluidSums {
   double potential = 0;      // [J/m]; above `reference`, the point that has none
   double max_speed = 0;      // [m/s]; not a number when any speed is not
   double density_error = 0;  // root mean square of n / n^0 - 1 where no surface is [-]
+
+  double energy() const { return kinetic + potential; }
 };
 FluidSums fluid_sums(const Fluid& fluid, const std::array<coord, 3>& reference);
 

@@ -650,7 +650,7 @@ TEST_CASE("each limit of a step in turn is the one that it breaks", "[unit][undo
   const Scene scene = scene_of_text(on_rigid_plate);
   Fluid fluid = build_fluid(scene, build_walls(scene));
   Coupler none;
-  StepGuard guard(scene, false);
+  StepGuard guard(scene, false, {}, 0);
   guard.keep(fluid, none);
   const auto x = host(fluid.particles.position);
   const auto u = host(fluid.particles.velocity);
@@ -681,6 +681,11 @@ TEST_CASE("each limit of a step in turn is the one that it breaks", "[unit][undo
   CHECK(contains(complaint(0), "not a number"));
   guard.put_back(fluid, none);
   CHECK(host(fluid.particles.velocity)(3, 1) == 0);
+  x(600, 0) = start + 0.01 * l0;
+  u(3, 1) = 500;  // 8 kJ/m; all the water has 157 J/m
+  CHECK(contains(complaint(1), "energy has risen by"));
+  guard.keep(fluid, none);  // the next step, which is not made again
+  CHECK(complaint(1).empty());
 }
 
 TEST_CASE("collisions know how near the nearest two came", "[unit][undo][effects]") {

@@ -36,7 +36,7 @@ double middle_at_rest(const ElasticBody& body) {
 /// Kinetic and potential, this from the plate at rest on [J/m].
 double energy_of(const FluidSimulation& simulation) {
   const FluidSums sums = fluid_sums(simulation.fluid(), {});
-  return sums.kinetic + sums.potential;
+  return sums.energy();
 }
 
 struct Outcome {

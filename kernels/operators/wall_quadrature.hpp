@@ -5,8 +5,9 @@
 //
 //   W_kq = P_k psi_kq A_q / max(sum_k' P_k' psi_k'q, least sum_q' A_q' psi_q'q)     psi = (1 - |x_k - x_q|^2 / R^2)^2
 //
-// (out of the plane of the place distances count twice, so that no other wall that looks the same way has a part) over pushes and places that look the same way (n_k . n_q > 0.7), of the area P_k. So a constant pressure p gives the force
-// p A_q at every place that is covered, and nowhere more; at the edge of the water, and under spray, the load fades out.
+// over pushes and places that look the same way (n_k . n_q > 0.7), of the area P_k. Distances out of the plane of the place
+// count twice, so that no other wall that looks the same way has a part. So a constant pressure p gives the force p A_q at
+// every place that is covered, and nowhere more; at the edge of the water, and under spray, the load fades out.
 
 #include <vector>
 
